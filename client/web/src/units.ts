@@ -18,6 +18,7 @@ export const UNIT_CHOICES = {
   pressure: { label: 'Pressure', units: [scaled('GPa', 1e-9), scaled('MPa', 1e-6)] },
   pressureCoefficient: { label: 'Pressure-viscosity coefficient', units: [scaled('1/GPa', 1e9), scaled('mm²/N', 1e6)] },
   speed: { label: 'Speed of curves', units: [plain('km/h'), scaled('rpm', 30 / Math.PI)] },
+  viscosity: { label: 'Viscosity', units: [plain('mm²/s'), plain('mPa s')] },
 } satisfies Record<string, { label: string; units: Unit[] }>;
 export type UnitKind = keyof typeof UNIT_CHOICES;
 
@@ -62,6 +63,8 @@ export const celsius: Unit = {
 /** Whether speeds are those of the pinion, in rpm. */
 export const isInRpm = (): boolean => inUse('speed').symbol === 'rpm';
 export const RPM: Unit = UNIT_CHOICES.speed.units[1]!; // of values in rad/s
+/** Whether viscosities are dynamic ones. */
+export const isDynamic = (): boolean => inUse('viscosity').symbol === 'mPa s';
 
 export const shown = (value: number, unit: Unit): number => value * unit.factor + unit.offset;
 

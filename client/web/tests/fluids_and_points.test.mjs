@@ -134,7 +134,7 @@ test('a speed of a curve opens its histories, and a zoom fetches their rows', as
   await page.waitForFunction(() => Number(document.querySelector('.histories')?.dataset.rowsPerPair) > 0);
 });
 
-test('a point has its phase portrait and what moves it', async () => {
+test('a point has its phase portrait, its order spectrum and what moves it', async () => {
   const curve = await server.call('POST', '/v1/simulations', {
     lubricant: 'lubricants/paper-fluid-1',
     inefficiency_curve: { first_speed_kilometres_per_hour: 50, last_speed_kilometres_per_hour: 60, speed_step_kilometres_per_hour: 5 },
@@ -144,6 +144,7 @@ test('a point has its phase portrait and what moves it', async () => {
   await page.getByText('Phase portrait').waitFor();
   const bars = page.getByRole('table', { name: 'Sensitivities of Mesh inefficiency', exact: true });
   await bars.waitFor();
+  await page.getByText('The largest amplitudes').click();
   assert.deepEqual(await foreignNumbers(page), []);
   const name = `simulations/${page.url().split('/').pop().split('?')[0]}`;
   const { result } = await server.call('GET', `/v1/${name}?read_mask=result.points.result.sensitivities`);
@@ -153,6 +154,10 @@ test('a point has its phase portrait and what moves it', async () => {
   assert.equal(Math.abs(Number(await bars.locator('[data-value]').first().getAttribute('data-value'))), largest);
   await page.getByLabel('Figure whose sensitivities').selectOption({ label: 'Film ratio, mean' });
   await page.getByRole('table', { name: 'Sensitivities of Film ratio, mean' }).waitFor();
+  await page.getByLabel('History whose spectrum').selectOption({ label: 'Mesh force' });
+  await page.waitForURL(/s=film_ratio.mean&o=mesh_force_newtons/);
+  const spectrum = await server.call('GET', `/v1/${name}:readSpectrum?columns=mesh_force_newtons`);
+  await page.waitForFunction((force) => document.querySelector('.pair table [data-value]')?.dataset.value === String(force), Math.max(...spectrum.columns[0].amplitudes));
 });
 
 test('a point that kept little is computed again with everything that its page shows', async () => {
@@ -160,6 +165,28 @@ test('a point that kept little is computed again with everything that its page s
   await page.goto(`${server.address}/point/${name.split('/')[1]}`);
   await page.getByRole('button', { name: 'Compute the point with histories and sensitivities' }).click();
   await page.getByText('Phase portrait').waitFor();
+});
+
+test('the viscosity of a fluid stands over temperature and pressure, beside another one, in either unit', async () => {
+  await page.goto(`${server.address}/fluids/my-oil`);
+  await page.getByRole('button', { name: 'Viscosity' }).click();
+  await page.getByLabel('Beside').selectOption('paper-fluid-1');
+  await page.getByText('Kinematic viscosity at ambient pressure').waitFor();
+  await page.getByText('Every number at ambient pressure').click();
+  await page.locator('thead th', { hasText: 'Lubricant 1' }).waitFor();
+  assert.deepEqual(await foreignNumbers(page), []);
+  await page.getByText('Units', { exact: true }).click();
+  await page.getByLabel('Unit: Viscosity').selectOption('mPa s');
+  await page.getByText('Dynamic viscosity at ambient pressure, mPa s; hollow: measured').waitFor();
+  assert.deepEqual(await foreignNumbers(page), []);
+  await page.getByLabel('Unit: Viscosity').selectOption('mm²/s');
+  await page.getByText('Units', { exact: true }).click();
+  for (const map of ['Film map', 'Traction map']) {
+    await page.getByRole('button', { name: map }).click();
+    await page.getByRole('region', { name: 'Numbers of the map' }).waitFor();
+    assert.deepEqual(await foreignNumbers(page), []);
+  }
+  assert.match(new URL(page.url()).search, /tab=traction/);
 });
 
 test('what another project has is not found, in the words of what does not exist', async () => {

@@ -7,10 +7,11 @@ import { Validity } from '../components/validity';
 import { remarkOf } from '../validity';
 import { ago, idOf, rounded } from '../format';
 import { readNumber, shown, written } from '../units';
+import { LawMapView, Viscosity } from './fluid_laws';
 import { BASE_OILS, constraintOf, DATA_SHEET, PARAMETERS, rangeText, unitOf, valueOf, type Field } from '../lubricant_fields';
 import { PROVENANCE } from '../provenance';
 import { useLoaded, useLubricants, useSchema } from '../resources';
-import { address, go, place } from '../router';
+import { address, go, place, set } from '../router';
 import { useStore } from '../store';
 
 export function Fluids() {
@@ -74,7 +75,10 @@ const useLubricant = (id: string) => useLoaded((signal) => get<Lubricant>(url(`l
 
 const REFERENCE = 'paper-fluid-1'; // that a new oil is compared with first
 
+const TABS: [string, string][] = [['', 'Parameters'], ['viscosity', 'Viscosity'], ['film', 'Film map'], ['traction', 'Traction map']];
+
 function FluidPage({ id }: { id: string }) {
+  const tab = useStore(place).query.get('tab') ?? '';
   const { value: lubricant, error, reload } = useLubricant(id);
   const schema = useSchema();
   if (error !== undefined && (error as ApiError).status === 404) return <Missing />;
@@ -120,12 +124,17 @@ function FluidPage({ id }: { id: string }) {
       </ul>
       {figures.sae_j306_grade_note && <p class="muted small">{figures.sae_j306_grade_note}</p>}
       {(figures.warnings ?? []).length > 0 && <Validity remarks={figures.warnings!.map((each) => remarkOf(each))} isChecked={false} />}
-      <div class="scroll" tabIndex={0} role="region" aria-label="Parameters">
+      <div class="tabs" role="group" aria-label="Show">
+        {TABS.map(([word, words]) => <button key={word} aria-pressed={tab === word} onClick={() => set({ tab: word || undefined })}>{words}</button>)}
+      </div>
+      {tab === 'viscosity' && <Viscosity id={id} lubricant={lubricant} />}
+      {(tab === 'film' || tab === 'traction') && <LawMapView key={tab} id={id} kind={tab} />}
+      {tab === '' && <div class="scroll" tabIndex={0} role="region" aria-label="Parameters">
         <table class="parameters">
           <thead><tr><th>Quantity</th><th class="number">Value</th><th>Unit</th><th>Origin</th><th>Source</th></tr></thead>
           <tbody>{[...DATA_SHEET, ...PARAMETERS].map(row)}</tbody>
         </table>
-      </div>
+      </div>}
     </>
   );
 }

@@ -1,9 +1,10 @@
 import { useEffect, useMemo, useState } from 'preact/hooks';
 import { ApiError, change, get, session, url } from '../api/client';
 import { watch } from '../api/events';
-import type { GearSet, PointResult, RangeWarning, Simulation } from '../api/types';
+import type { GearSet, PointResult, RangeWarning, ReadSpectrumResponse, Simulation } from '../api/types';
 import { CurveChart } from '../charts/curve_chart';
 import { Loop } from '../charts/loop';
+import { Stems } from '../charts/stems';
 import type { Line, Spec } from '../charts/spec';
 import { Bars } from '../components/bars';
 import { JobState } from '../components/job_state';
@@ -202,6 +203,51 @@ function PhasePortrait({ job, halfBacklash, phase }: { job: Simulation; halfBack
   );
 }
 
+const MOST_ORDER = 20;
+const LISTED_ORDERS = 10;
+
+/** Amplitudes of a history over multiples of the mesh frequency. */
+function Spectrum({ job }: { job: Simulation }) {
+  const { query } = useStore(place);
+  const inUnits = useStore(units);
+  const panels = PANELS.filter((each) => each.lines.length === 1);
+  const panel = panels.find((each) => each.lines[0]!.column === query.get('o')) ?? panels[0]!;
+  const { column } = panel.lines[0]!;
+  const answer = useLoaded((signal) => get<ReadSpectrumResponse>(url(`${job.name}:readSpectrum`, { columns: [column], maximum_order: MOST_ORDER }), signal), `spectrum ${job.name} ${column}`);
+  const unit: Unit = { ...panel.unit, offset: 0 };
+  const found = answer.value?.columns?.[0];
+  const orders = answer.value?.orders ?? [];
+  const amplitudes = useMemo(() => (found?.amplitudes ?? []).map((value) => shown(value, unit)), [found, inUnits]);
+  if (answer.error !== undefined) return <Failure error={answer.error} onRetry={answer.reload} />;
+  if (!found) return null;
+  const largest = orders.map((_, k) => k).sort((a, b) => amplitudes[b]! - amplitudes[a]!).slice(0, LISTED_ORDERS);
+  return (
+    <figure class="figure">
+      <div class="heading">
+        <figcaption>Order spectrum: amplitudes at multiples of the mesh frequency, {rounded(answer.value!.mesh_frequency_hertz)} Hz</figcaption>
+        <label class="inline">of
+          <select aria-label="History whose spectrum is shown" value={column} onChange={(event) => set({ o: event.currentTarget.value })}>
+            {panels.map((each) => <option key={each.title} value={each.lines[0]!.column}>{each.title}</option>)}
+          </select>
+        </label>
+      </div>
+      <Stems x={orders} y={amplitudes} xLabel="Order" yLabel={`Amplitude, ${unit.symbol}`} height={320} />
+      <details>
+        <summary>The largest amplitudes</summary>
+        <table>
+          <thead><tr><th class="number">Order</th><th class="number">Amplitude <small>{unit.symbol}</small></th><th class="number">Phase angle <small>rad</small></th></tr></thead>
+          <tbody>
+            {largest.map((k) => (
+              <tr key={k}><th scope="row" class="number">{orders[k]}</th><td class="number"><Num value={found.amplitudes![k]} unit={unit} /></td><td class="number"><Num value={found.phase_angles_radians?.[k]} unit={plain('rad')} /></td></tr>
+            ))}
+          </tbody>
+        </table>
+      </details>
+      {!answer.value!.is_periodic && <p class="small">The response has no period: the amplitudes depend on the length of the record.</p>}
+    </figure>
+  );
+}
+
 const SPEED: Unit = scaled('mm/s', 1e3);
 
 function Figures({ result, inputs }: { result: PointResult; inputs: RangeWarning[] }) {
@@ -314,6 +360,7 @@ function Histories({ job, result }: { job: Simulation; result: PointResult }) {
       <p class="axis-title">Mesh cycles</p>
       <div class="pair">
         {(job.result?.history_columns ?? []).includes(VELOCITY) && <PhasePortrait job={job} halfBacklash={halfBacklash} phase={phase} />}
+        <Spectrum job={job} />
       </div>
     </section>
   );

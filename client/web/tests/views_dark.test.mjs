@@ -1,0 +1,4 @@
+// Every view in the dark theme.
+import { testViews } from './views.mjs';
+
+testViews('dark');
