@@ -1,10 +1,10 @@
-import type { Constraint, Lubricant, LubricantMeasurements } from './api/types';
+import type { Constraint, Lubricant } from './api/types';
 import { kelvin, perPascal, plain, scaled, written, type Unit } from './units';
 
 /** A number of a lubricant that the form shows; the range comes from the schema. */
 export interface Field {
   path: string; // within Lubricant, as violations name it
-  message: 'Lubricant' | 'LubricantMeasurements';
+  message: 'Lubricant' | 'LubricantMeasurements' | 'ImprovedYasutomi';
   field: string;
   label: string;
   unit?: Unit; // in which people write it; else the schema's
@@ -39,6 +39,21 @@ export const PARAMETERS: Field[] = [
   parameter('density_slope_kilograms_per_cubic_metre_kelvin', 'Slope of the density'),
 ];
 
+const yasutomi = (field: string, label: string, unit?: Unit): Field =>
+  ({ path: `improved_yasutomi.${field}`, message: 'ImprovedYasutomi', field, label, ...(unit ? { unit } : {}) });
+
+/** The law of a fluid whose viscosity was measured under pressure; it takes the place of α*. */
+export const PRESSURE_LAW: Field[] = [
+  yasutomi('glass_viscosity_pascal_seconds', 'Yasutomi: viscosity at the glass transition'),
+  yasutomi('glass_temperature_rise_kelvin', 'Yasutomi A₁, rise of the glass temperature'),
+  yasutomi('glass_pressure_factor_per_pascal', 'Yasutomi A₂', perPascal),
+  yasutomi('expansivity_pressure_factor_per_pascal', 'Yasutomi b₁', perPascal),
+  yasutomi('expansivity_exponent', 'Yasutomi b₂'),
+];
+
+/** All numbers of a lubricant that pages show. */
+export const ALL_FIELDS: Field[] = [...DATA_SHEET, ...PARAMETERS, ...PRESSURE_LAW];
+
 export const BASE_OILS: [string, string][] = [
   ['BASE_OIL_CLASS_UNSPECIFIED', 'not stated'],
   ['BASE_OIL_CLASS_GROUP_I', 'Group I'],
@@ -51,7 +66,7 @@ export const BASE_OILS: [string, string][] = [
 ];
 
 export function valueOf(lubricant: Lubricant, field: Field): number | undefined {
-  const holder: Lubricant | LubricantMeasurements | undefined = field.message === 'Lubricant' ? lubricant : lubricant.measurements;
+  const holder = { Lubricant: lubricant, LubricantMeasurements: lubricant.measurements, ImprovedYasutomi: lubricant.improved_yasutomi }[field.message];
   const value = (holder as Record<string, unknown> | undefined)?.[field.field];
   // In measurements 0 stands for "not stated".
   return typeof value === 'number' && !(field.message === 'LubricantMeasurements' && value === 0) ? value : undefined;

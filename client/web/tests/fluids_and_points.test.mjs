@@ -60,6 +60,23 @@ test('a mistake is named at its field, with the unit and range of the schema', a
   assert.equal(saved.measurements.kinematic_viscosity_40_celsius_square_millimetres_per_second, 103, 'other fields stay');
 });
 
+test('a fluid whose viscosity was measured under pressure is entered with the law of that', async () => {
+  await page.goto(`${server.address}/fluids/new`);
+  await page.getByLabel('Name').fill('Measured oil');
+  for (const [label, value] of [['Viscosity at 40 °C', '103'], ['Viscosity at 100 °C', '15.1'], ['Density at 15 °C', '868']]) await page.getByLabel(label).fill(value);
+  await page.getByText('Parameters of the model').click();
+  for (const [label, value] of [[/at the glass transition/, '1e12'], ['Yasutomi A₁', '50'], ['Yasutomi A₂', '1.5'], ['Yasutomi b₁', '7']]) await page.getByLabel(label).fill(value);
+  await page.getByRole('button', { name: 'Save' }).click();
+  await page.locator('.problem', { hasText: 'expansivity_exponent' }).waitFor();
+  await page.getByLabel('Yasutomi b₂').fill('-0.5');
+  await page.getByRole('button', { name: 'Save' }).click();
+  await page.waitForURL(/\/fluids\/measured-oil$/);
+  await page.getByRole('rowheader', { name: 'Yasutomi b₂' }).waitFor();
+  const { improved_yasutomi: law } = await server.call('GET', '/v1/lubricants/measured-oil');
+  assert.equal(law.glass_pressure_factor_per_pascal, 1.5e-9);
+  assert.equal(law.expansivity_exponent, -0.5);
+});
+
 test('a dropped table shows what is wrong at its row', async () => {
   await page.goto(`${server.address}/fluids/new`);
   await page.getByLabel('Id').fill('dropped');

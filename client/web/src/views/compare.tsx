@@ -18,7 +18,7 @@ import {
 import { shortTitle } from '../curve';
 import { idOf, revisionIdOf } from '../format';
 import { celsius, plain, readNumber, shown, sumpText, units, watts, written, type Unit } from '../units';
-import { constraintOf, DATA_SHEET, PARAMETERS, unitOf, valueOf } from '../lubricant_fields';
+import { ALL_FIELDS, constraintOf, unitOf, valueOf, type Field } from '../lubricant_fields';
 import { PROVENANCE } from '../provenance';
 import { OPTIONS } from '../request';
 import { titlesOf, useAnswer, useGearSets, useLoaded, useLubricants, useSchema } from '../resources';
@@ -411,7 +411,7 @@ function Inputs({ a, b, names }: { a: string; b: string; names: string[] }) {
   const both = useLoaded((signal) => Promise.all([a, b].map((id) => get<Lubricant>(url(`lubricants/${id}`), signal))), `${a} ${b}`);
   const schema = useSchema();
   if (!both.value) return null;
-  const cell = (lubricant: Lubricant, field: (typeof PARAMETERS)[number]) => {
+  const cell = (lubricant: Lubricant, field: Field) => {
     const unit = unitOf(field, constraintOf(field, schema.value?.constraints));
     const origin = (lubricant.provenance ?? []).find((each) => each.field === field.field);
     return (
@@ -428,7 +428,7 @@ function Inputs({ a, b, names }: { a: string; b: string; names: string[] }) {
         <table>
           <thead><tr><th>Quantity</th><th>Unit</th>{names.map((name) => <th key={name} class="number">{name}</th>)}</tr></thead>
           <tbody>
-            {[...DATA_SHEET, ...PARAMETERS].filter((field) => both.value!.some((each) => valueOf(each, field) !== undefined)).map((field) => (
+            {ALL_FIELDS.filter((field) => both.value!.some((each) => valueOf(each, field) !== undefined)).map((field) => (
               <tr key={field.path}>
                 <th scope="row">{field.label}</th><td>{unitOf(field, constraintOf(field, schema.value?.constraints)).symbol}</td>
                 {both.value!.map((each) => cell(each, field))}

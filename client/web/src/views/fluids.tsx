@@ -8,7 +8,7 @@ import { remarkOf } from '../validity';
 import { ago, idOf, rounded } from '../format';
 import { readNumber, shown, written } from '../units';
 import { LawMapView, Viscosity } from './fluid_laws';
-import { BASE_OILS, constraintOf, DATA_SHEET, PARAMETERS, rangeText, unitOf, valueOf, type Field } from '../lubricant_fields';
+import { ALL_FIELDS, BASE_OILS, constraintOf, DATA_SHEET, PARAMETERS, PRESSURE_LAW, rangeText, unitOf, valueOf, type Field } from '../lubricant_fields';
 import { PROVENANCE } from '../provenance';
 import { useLoaded, useLubricants, useSchema } from '../resources';
 import { address, go, place, set } from '../router';
@@ -132,7 +132,7 @@ function FluidPage({ id }: { id: string }) {
       {tab === '' && <div class="scroll" tabIndex={0} role="region" aria-label="Parameters">
         <table class="parameters">
           <thead><tr><th>Quantity</th><th class="number">Value</th><th>Unit</th><th>Origin</th><th>Source</th></tr></thead>
-          <tbody>{[...DATA_SHEET, ...PARAMETERS].map(row)}</tbody>
+          <tbody>{ALL_FIELDS.map(row)}</tbody>
         </table>
       </div>}
     </>
@@ -180,9 +180,10 @@ function FluidForm({ lubricant }: { lubricant?: Lubricant }) {
     event.preventDefault();
     const body: Record<string, unknown> = { display_name: name, base_oil_class: base };
     const measurements: Record<string, number> = {};
+    const law: Record<string, number> = {};
     const changed = ['display_name', 'base_oil_class'];
     const wrong: Violation[] = [];
-    for (const field of [...DATA_SHEET, ...PARAMETERS]) {
+    for (const field of ALL_FIELDS) {
       const text = texts[field.path];
       if (text === undefined) continue;
       const unit = unitOf(field, constraintOf(field, constraints));
@@ -194,8 +195,9 @@ function FluidForm({ lubricant }: { lubricant?: Lubricant }) {
       changed.push(field.path);
       if (text.trim() === '') continue;
       if (field.message === 'Lubricant') body[field.field] = value;
-      else measurements[field.field] = value;
+      else (field.message === 'ImprovedYasutomi' ? law : measurements)[field.field] = value;
     }
+    if (Object.keys(law).length > 0) body['improved_yasutomi'] = law;
     if (Object.keys(measurements).length > 0) body['measurements'] = measurements;
     if (wrong.length > 0) return setProblem(new ApiError(400, '', wrong[0]!.description, wrong));
     try {
@@ -230,7 +232,7 @@ function FluidForm({ lubricant }: { lubricant?: Lubricant }) {
   };
   const idViolation = violationOf('lubricant_id') ?? violations.find((each) => each.field === 'lubricant_id' || each.field === 'lubricant.name');
   const shownElsewhere = violations.length > 0 &&
-    violations.every((each) => [...DATA_SHEET, ...PARAMETERS].some((field) => violationOf(field.path) === each) || rows.includes(each) || each === idViolation);
+    violations.every((each) => ALL_FIELDS.some((field) => violationOf(field.path) === each) || rows.includes(each) || each === idViolation);
   return (
     <form ref={form} class="fluid-form" onSubmit={(event) => void submit(event)} noValidate>
       <h1>{lubricant ? `Edit ${lubricant.display_name || idOf(lubricant.name)}` : 'Enter an oil'}</h1>
@@ -269,9 +271,13 @@ function FluidForm({ lubricant }: { lubricant?: Lubricant }) {
           {table && <TablePreview text={table.text} rows={rows} onRemove={() => setTable(null)} />}
         </fieldset>
       )}
-      <details open={(lubricant !== undefined && !lubricant.measurements) || PARAMETERS.some((field) => violationOf(field.path))}>
+      <details open={(lubricant !== undefined && !lubricant.measurements) || [...PARAMETERS, ...PRESSURE_LAW].some((field) => violationOf(field.path))}>
         <summary>Parameters of the model{lubricant ? '' : ': what stays empty is estimated, and the result says so'}</summary>
         <fieldset class="grid">{PARAMETERS.map(input)}</fieldset>
+        <fieldset class="grid">
+          <legend>In place of α*: the improved Yasutomi law, for viscosities that were measured under pressure</legend>
+          {PRESSURE_LAW.map(input)}
+        </fieldset>
       </details>
       <div class="actions">
         <button class="primary">{lubricant ? 'Save a new revision' : 'Save'}</button>
