@@ -20,6 +20,7 @@ import { readNumber, shown, sumpText, units, written } from '../units';
 const PAGE = 100;
 const MOST_STREAMS = 3; // a browser opens six connections to a server
 const RELOAD_MILLISECONDS = 1500; // between readings of rows of a campaign that runs
+const LIST_MILLISECONDS = 5000; // between readings of a list that has more open campaigns than streams
 const SHOWN_ROWS = 100;
 const MOST_AXES = 8;
 const ENDED = ['SUCCEEDED', 'FAILED', 'CANCELLED'];
@@ -81,9 +82,14 @@ function CampaignList() {
     setCampaigns((all) => all?.map((each) => (each.name === name ? next(each) : each)));
   useEffect(() => {
     setCampaigns(list.value);
-    const open = (list.value ?? []).filter((each) => !ENDED.includes(each.state!)).slice(0, MOST_STREAMS);
-    const streams = open.map((each) => watchCampaign(each.name!, (event) => put((old) => updated(old, event), each.name!)));
-    return () => streams.forEach((each) => each.close());
+    const open = (list.value ?? []).filter((each) => !ENDED.includes(each.state!));
+    // Campaigns without a stream of their own are read now and then.
+    const timer = open.length > MOST_STREAMS ? window.setTimeout(list.reload, LIST_MILLISECONDS) : undefined;
+    const streams = open.slice(0, MOST_STREAMS).map((each) => watchCampaign(each.name!, (event) => put((old) => updated(old, event), each.name!)));
+    return () => {
+      streams.forEach((each) => each.close());
+      clearTimeout(timer);
+    };
   }, [list.value]);
   return (
     <>
