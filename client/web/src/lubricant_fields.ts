@@ -1,5 +1,5 @@
 import type { Constraint, Lubricant } from './api/types';
-import { kelvin, perPascal, plain, scaled, written, type Unit } from './units';
+import { kelvin, perPascal, plain, scaled, shown, written, type Unit } from './units';
 
 /** A number of a lubricant that the form shows; the range comes from the schema. */
 export interface Field {
@@ -79,8 +79,11 @@ const UNITS: Record<string, string> = { 'mm2/s': 'mm²/s', 'kg/m3': 'kg/m³', 'k
 export const unitOf = (field: Field, constraint: Constraint | undefined): Unit =>
   field.unit ?? plain(UNITS[constraint?.unit ?? ''] ?? constraint?.unit ?? '');
 
+const LEAST_POWER = 1e6; // from which on a limit is written as a power
+
 export function rangeText(constraint: Constraint | undefined, unit: Unit): string {
   if (!constraint) return '';
-  const grouped = (value: number) => written(value, unit).replace(/^(-?)(\d{2,3})(\d{3})$/, '$1$2\u202f$3');
+  const grouped = (value: number) => (Math.abs(shown(value, unit)) >= LEAST_POWER ? Number(written(value, unit)).toExponential().replace('e+', 'e')
+    : written(value, unit).replace(/^(-?)(\d{2,3})(\d{3})$/, '$1$2\u202f$3'));
   return `${grouped(constraint.minimum!)} to ${grouped(constraint.maximum!)}`;
 }
