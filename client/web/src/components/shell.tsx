@@ -98,6 +98,7 @@ export function Shell() {
           {LINKS.map(({ path: link, word, isMinor }) => (
             <a key={link} class={isMinor ? 'minor' : link === '/more' ? 'more' : ''} href={address(link)} aria-current={current(link) ? 'page' : undefined}>{word}</a>
           ))}
+          <a class="minor" href="/docs" target="_blank">API</a>
         </nav>
         <Account />
       </header>
