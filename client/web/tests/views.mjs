@@ -108,7 +108,9 @@ export function testViews(colorScheme) {
         if (overflow > 0) problems.push(`${name}: ${overflow} pixels wider than the window`);
         if (colorScheme === 'dark' && width === 390) continue; // its colors and its layout are looked at above
         await page.evaluate(AXE);
-        const { violations } = await page.evaluate(() => axe.run(document, { resultTypes: ['violations'] }));
+        // The themes differ in colors alone.
+        const only = colorScheme === 'dark' ? { runOnly: { type: 'tag', values: ['cat.color'] } } : {};
+        const { violations } = await page.evaluate((only) => axe.run(document, { resultTypes: ['violations'], ...only }), only);
         for (const each of violations) {
           if (!['serious', 'critical'].includes(each.impact)) continue;
           problems.push(`${name}: ${each.id}: ${each.help}: ${each.nodes.slice(0, 2).map((node) => node.html.slice(0, 160)).join(' | ')}`);
