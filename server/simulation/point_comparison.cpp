@@ -11,193 +11,18 @@
 #include <utility>
 
 #include "core/numerics/square.h"
-#include "core/refusal.h"
 #include "core/uncertainty/normal_draws.h"
 #include "core/uncertainty/spread.h"
 #include "core/version.h"
 #include "server/contract/check_message.h"
-#include "server/mapping/to_core.h"
-#include "server/simulation/input_deviations.h"
+#include "server/simulation/compared_fluid.h"
+#include "server/simulation/drawn_figures.h"
 
 namespace tribodyn::server {
 namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t kSeed = 1;  // any: equal requests give equal answers
-
-/// The figures of a point that a comparison speaks of.
-enum Figure {
-  kEnergyMean,
-  kRms,
-  kLossPower,
-  kPinionTorque,
-  kDteMinimum,
-  kDteMaximum,
-  kFilmRatio,  // NaN unless the request has contact_figures, as are the next ones
-  kContactTemperature,
-  kFrictionCoefficient,
-  kPressure,
-  kFlashTemperature,
-  kFigures
-};
-struct ComparedFigures {
-  std::array<double, kFigures> value;
-  std::array<double, kFigures> solver_error;  // in the unit of the figure
-  bool contact_loss;
-};
-/// By condition, and last the weighted mean of all conditions; nullopt: no figures.
-using FiguresByCondition = std::vector<std::optional<ComparedFigures>>;
-
-/// A source of error of one fluid, and what it does to the figures.
-struct Source {
-  const InputError* error;
-  std::vector<Mixture> mixtures;  // one for each deviation
-  /// By deviation, condition and figure: half the difference between the deviations 1 and -1.
-  std::vector<std::vector<std::array<double, kFigures>>> effects;
-
-  double squared_effect(std::size_t condition, Figure figure) const {
-    double out = 0;
-    for (const auto& each : effects) out += square(each[condition][figure]);
-    return out;
-  }
-};
-
-/// Everything that is computed of one fluid.
-struct ComputedFluid {
-  std::string revision;
-  std::vector<EvaluatedPoint> points;  // with the stated inputs
-  FiguresByCondition stated;
-  std::vector<FiguresByCondition> drawn;
-  std::vector<Source> sources;
-};
-
-std::optional<ComparedFigures> figures_of(const EvaluatedPoint& point) {
-  if (!point.figures || !point.figures->inefficiency_energy_mean ||
-      !point.figures->inefficiency_rms) {
-    return std::nullopt;
-  }
-  const PointFigures& f = *point.figures;
-  ComparedFigures out{{*f.inefficiency_energy_mean, *f.inefficiency_rms, f.mesh_loss_power,
-                       f.pinion_torque, f.dte_minimum, f.dte_maximum},
-                      {},
-                      f.contact_loss};
-  std::fill(out.value.begin() + kFilmRatio, out.value.end(), kNoNumber);
-  if (f.contact) {
-    out.value[kFilmRatio] = f.contact->film_ratio_minimum;
-    out.value[kContactTemperature] = f.contact->contact_temperature_maximum;
-    out.value[kFrictionCoefficient] = f.contact->friction_coefficient_mean;
-    out.value[kPressure] = f.contact->pressure_maximum;
-    out.value[kFlashTemperature] = f.contact->flash_temperature_rise_maximum;
-  }
-  const double relative_error = f.estimated_relative_error.value_or(0);
-  for (int i = 0; i < kFigures; ++i) out.solver_error[i] = relative_error * std::abs(out.value[i]);
-  // The estimate is relative to the largest transmission error, and there is none of the contact.
-  out.solver_error[kDteMinimum] = out.solver_error[kDteMaximum] =
-      relative_error * std::max(std::abs(f.dte_minimum), std::abs(f.dte_maximum));
-  std::fill(out.solver_error.begin() + kFilmRatio, out.solver_error.end(), kNoNumber);
-  return out;
-}
-
-FiguresByCondition figures_by_condition(const std::vector<EvaluatedPoint>& points,
-                                        const std::vector<double>& weights) {
-  FiguresByCondition out;
-  std::optional<ComparedFigures> mean = ComparedFigures{};
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    out.push_back(figures_of(points[k]));
-    if (!out.back()) mean.reset();
-    if (!mean) continue;
-    mean->contact_loss = mean->contact_loss || out.back()->contact_loss;
-    for (int i = 0; i < kFigures; ++i) {
-      mean->value[i] += weights[k] * out.back()->value[i];
-      mean->solver_error[i] += weights[k] * out.back()->solver_error[i];
-    }
-  }
-  out.push_back(mean);
-  return out;
-}
-
-/// Computes the points of one fluid with inputs that err.
-class FluidPoints {
- public:
-  FluidPoints(const PointComparison& comparison, const PointEvaluation& evaluation,
-              const std::shared_ptr<PreparedGearSet>& gear_set,
-              const std::function<bool()>& is_over)
-      : comparison_(comparison),
-        evaluation_(evaluation),
-        gear_set_(gear_set),
-        physical_(scene(evaluation.base)),
-        options_(point_options(evaluation)) {
-    options_.progress = [&is_over](double) { return !is_over(); };
-    inputs_.lubricant = *evaluation.base.lubricant;
-    inputs_.lubricant.clear_measurements();
-    inputs_.lubricant.clear_provenance();
-    inputs_.surface = *evaluation.base.surface;
-    inputs_.vehicle = *evaluation.base.vehicle;
-  }
-
-  void compute(const NormalDraws& draws, ComputedFluid& out) {
-    out.points = evaluate();
-    out.stated = figures_by_condition(out.points, comparison_.weights);
-    deviations_.clear();
-    for (const Source& source : out.sources) deviations_.emplace_back(source.mixtures.size(), 0.0);
-    for (std::size_t s = 0; s < out.sources.size(); ++s) {
-      for (std::size_t i = 0; i < deviations_[s].size(); ++i) {
-        out.sources[s].effects.push_back(effects(out, deviations_[s][i]));
-      }
-    }
-    if (out.sources.empty()) return;
-    for (int n = 0; n < comparison_.draws; ++n) {
-      for (std::size_t s = 0; s < out.sources.size(); ++s) {
-        for (std::size_t i = 0; i < deviations_[s].size(); ++i) {
-          deviations_[s][i] = out.sources[s].mixtures[i].at(draws, n);
-        }
-      }
-      out.drawn.push_back(figures_at(out.sources));
-    }
-  }
-
- private:
-  std::vector<EvaluatedPoint> evaluate() {
-    physical_.roughness = roughness(inputs_.surface);
-    physical_.boundary = boundary_friction(inputs_.surface);
-    physical_.vehicle = to_core(inputs_.vehicle);
-    return evaluate_conditions(
-        evaluation_, inputs_.lubricant, physical_,
-        {inputs_.sump_temperature_rise_kelvin, inputs_.inlet_temperature_rise_kelvin}, options_,
-        gear_set_);
-  }
-  FiguresByCondition figures_at(const std::vector<Source>& sources) {
-    for (std::size_t s = 0; s < sources.size(); ++s) {
-      sources[s].error->apply(deviations_[s], inputs_);
-    }
-    return figures_by_condition(evaluate(), comparison_.weights);
-  }
-  /// Of one deviation; where the model refuses one side, of the other side alone.
-  std::vector<std::array<double, kFigures>> effects(const ComputedFluid& fluid, double& deviation) {
-    deviation = 1;
-    const FiguresByCondition plus = figures_at(fluid.sources);
-    deviation = -1;
-    const FiguresByCondition minus = figures_at(fluid.sources);
-    deviation = 0;
-    std::vector<std::array<double, kFigures>> out(plus.size());
-    for (std::size_t k = 0; k < plus.size(); ++k) {
-      const auto& high = plus[k] ? plus[k] : fluid.stated[k];
-      const auto& low = minus[k] ? minus[k] : fluid.stated[k];
-      if (!high || !low) continue;
-      const double sides = plus[k] && minus[k] ? 2 : 1;
-      for (int i = 0; i < kFigures; ++i) out[k][i] = (high->value[i] - low->value[i]) / sides;
-    }
-    return out;
-  }
-
-  const PointComparison& comparison_;
-  const PointEvaluation& evaluation_;
-  std::shared_ptr<PreparedGearSet> gear_set_;
-  Scene physical_;
-  PointOptions options_;
-  UncertainInputs inputs_;
-  std::vector<std::vector<double>> deviations_;  // by source
-};
 
 /// Sets standard uncertainty and interval from the draws that the model did not refuse.
 void set_spread(std::vector<double> drawn, int draws, double widening, v1::UncertainFigure& out) {
@@ -208,17 +33,18 @@ void set_spread(std::vector<double> drawn, int draws, double widening, v1::Uncer
 }
 
 v1::UncertainFigure figure_message(const ComputedFluid& fluid, std::size_t condition,
-                                   Figure figure) {
+                                   ComparedFigure figure) {
   v1::UncertainFigure out;
-  const ComparedFigures& stated = *fluid.stated[condition];
+  const StatedFigures& stated = *fluid.stated[condition];
   out.set_value(stated.value[figure]);
   out.set_solver_error(stated.solver_error[figure]);
   double variance = 0;
-  for (const Source& source : fluid.sources) variance += source.squared_effect(condition, figure);
+  for (const ErrorSource& source : fluid.sources)
+    variance += source.squared_effect(condition, figure);
   out.set_linear_standard_uncertainty(std::sqrt(variance));
   std::vector<double> drawn;
-  for (const FiguresByCondition& draw : fluid.drawn) {
-    if (draw[condition]) drawn.push_back(draw[condition]->value[figure]);
+  for (const ValuesByCondition& draw : fluid.drawn) {
+    if (draw[condition]) drawn.push_back((*draw[condition])[figure]);
   }
   set_spread(std::move(drawn), static_cast<int>(fluid.drawn.size()), 0, out);
   return out;
@@ -239,7 +65,7 @@ void finish_shares(double variance, Shares& shares) {
 template <class Shares>
 void add_shares(const ComputedFluid& fluid, std::size_t condition, Shares& out) {
   double variance = 0;
-  for (const Source& source : fluid.sources) {
+  for (const ErrorSource& source : fluid.sources) {
     const double part = source.squared_effect(condition, kEnergyMean);
     variance += part;
     v1::InputShare& share = *out.Add();
@@ -253,8 +79,8 @@ void add_shares(const ComputedFluid& fluid, std::size_t condition, Shares& out) 
 
 /// The source of a fluid whose deviations are correlated with those of `source`; null if there is
 /// none.
-const Source* counterpart(const Source& source, const ComputedFluid& fluid) {
-  for (const Source& each : fluid.sources) {
+const ErrorSource* counterpart(const ErrorSource& source, const ComputedFluid& fluid) {
+  for (const ErrorSource& each : fluid.sources) {
     if (each.error->input == source.error->input &&
         correlation(each.mixtures[0], source.mixtures[0]) > 0) {
       return &each;
@@ -267,7 +93,7 @@ const Source* counterpart(const Source& source, const ComputedFluid& fluid) {
 double add_difference_shares(const ComputedFluid& fluid, const ComputedFluid& first,
                              std::size_t condition, v1::ComparedDifference& out) {
   double variance = 0;
-  const auto add = [&](const Source& source, const std::string& revision, double part,
+  const auto add = [&](const ErrorSource& source, const std::string& revision, double part,
                        double effect) {
     variance += part;
     v1::InputShare& share = *out.add_shares();
@@ -276,8 +102,8 @@ double add_difference_shares(const ComputedFluid& fluid, const ComputedFluid& fi
     share.set_variance_share(part);
     share.set_effect(effect);
   };
-  for (const Source& source : fluid.sources) {
-    const Source* other = counterpart(source, first);
+  for (const ErrorSource& source : fluid.sources) {
+    const ErrorSource* other = counterpart(source, first);
     if (other == nullptr) {
       const double part = source.squared_effect(condition, kEnergyMean);
       add(source, fluid.revision, part, std::sqrt(part));
@@ -293,7 +119,7 @@ double add_difference_shares(const ComputedFluid& fluid, const ComputedFluid& fi
     part = std::max(0.0, part);
     add(source, "", part, std::sqrt(part));
   }
-  for (const Source& source : first.sources) {
+  for (const ErrorSource& source : first.sources) {
     if (counterpart(source, fluid) != nullptr) continue;
     const double part = source.squared_effect(condition, kEnergyMean);
     add(source, first.revision, part, std::sqrt(part));
@@ -302,12 +128,24 @@ double add_difference_shares(const ComputedFluid& fluid, const ComputedFluid& fi
   return variance;
 }
 
+/// Returns the inefficiency of a fluid in a draw. A fluid without errors has no draws: its stated
+/// values stand for each of them.
+std::optional<double> drawn_inefficiency(const ComputedFluid& fluid, std::size_t condition,
+                                         std::size_t draw) {
+  if (!fluid.drawn.empty()) {
+    const std::optional<FigureValues>& values = fluid.drawn[draw][condition];
+    return values ? std::optional((*values)[kEnergyMean]) : std::nullopt;
+  }
+  const std::optional<StatedFigures>& stated = fluid.stated[condition];
+  return stated ? std::optional(stated->value[kEnergyMean]) : std::nullopt;
+}
+
 v1::ComparedDifference difference(const ComputedFluid& fluid, const ComputedFluid& first,
                                   std::size_t condition) {
   v1::ComparedDifference out;
   if (!fluid.stated[condition] || !first.stated[condition]) return out;
   v1::UncertainFigure& figure = *out.mutable_difference_percent();
-  const ComparedFigures &a = *fluid.stated[condition], &b = *first.stated[condition];
+  const StatedFigures &a = *fluid.stated[condition], &b = *first.stated[condition];
   figure.set_value(a.value[kEnergyMean] - b.value[kEnergyMean]);
   figure.set_solver_error(a.solver_error[kEnergyMean] + b.solver_error[kEnergyMean]);
   figure.set_linear_standard_uncertainty(
@@ -315,14 +153,9 @@ v1::ComparedDifference difference(const ComputedFluid& fluid, const ComputedFlui
   const std::size_t draws = std::max(fluid.drawn.size(), first.drawn.size());
   std::vector<double> drawn;
   for (std::size_t n = 0; n < draws; ++n) {
-    // A fluid without errors has no draws: its stated values stand for each of them.
-    const auto& of_fluid =
-        fluid.drawn.empty() ? fluid.stated[condition] : fluid.drawn[n][condition];
-    const auto& of_first =
-        first.drawn.empty() ? first.stated[condition] : first.drawn[n][condition];
-    if (of_fluid && of_first) {
-      drawn.push_back(of_fluid->value[kEnergyMean] - of_first->value[kEnergyMean]);
-    }
+    const auto of_fluid = drawn_inefficiency(fluid, condition, n);
+    const auto of_first = drawn_inefficiency(first, condition, n);
+    if (of_fluid && of_first) drawn.push_back(*of_fluid - *of_first);
   }
   set_spread(drawn, static_cast<int>(draws), figure.solver_error(), figure);
   if (drawn.empty()) drawn.push_back(figure.value());
@@ -365,7 +198,8 @@ v1::ComparedPoint point_message(const ComputedFluid& fluid, std::size_t conditio
         figure_message(fluid, condition, kFlashTemperature);
   }
   out.set_contact_loss(fluid.stated[condition]->contact_loss);
-  for (const FiguresByCondition& draw : fluid.drawn) {
+  out.set_solved_draws(fluid.solved_draws[condition]);
+  for (const ValuesByCondition& draw : fluid.drawn) {
     if (!draw[condition]) out.set_refused_draws(out.refused_draws() + 1);
   }
   add_shares(fluid, condition, *out.mutable_shares());
@@ -393,15 +227,6 @@ v1::ComparedLubricant lubricant_message(const ComputedFluid& fluid, const Comput
   return out;
 }
 
-/// Returns the mean inefficiency of a fluid in a draw. A fluid without errors has no draws: its
-/// stated values stand for each of them.
-std::optional<double> drawn_mean(const ComputedFluid& fluid, std::size_t draw) {
-  const std::optional<ComparedFigures>& figures =
-      fluid.drawn.empty() ? fluid.stated.back() : fluid.drawn[draw].back();
-  if (!figures) return std::nullopt;
-  return figures->value[kEnergyMean];
-}
-
 /// Returns for each fluid the share of draws in which its mean is the least of all; equal ones
 /// share a draw. Draws in which a fluid has no mean are left out.
 std::vector<double> best_probabilities(const std::vector<ComputedFluid>& fluids) {
@@ -412,7 +237,8 @@ std::vector<double> best_probabilities(const std::vector<ComputedFluid>& fluids)
   for (std::size_t n = 0; n < draws; ++n) {
     std::vector<double> means;
     for (const ComputedFluid& fluid : fluids) {
-      if (const auto mean = drawn_mean(fluid, n)) means.push_back(*mean);
+      if (const auto mean = drawn_inefficiency(fluid, fluid.points.size(), n))
+        means.push_back(*mean);
     }
     if (means.size() < fluids.size()) continue;
     ++counted;
@@ -546,10 +372,7 @@ v1::ComparePointsResponse compare_points(const PointComparison& comparison,
   const SimulationInputs& base = comparison.fluids.front().evaluation.base;
   const Scene physical = scene(base);
   const std::shared_ptr<PreparedGearSet> gear_set = gear_sets.take(base.gear_set, physical);
-  for (std::size_t i = 0; i < fluids.size(); ++i) {
-    FluidPoints(comparison, comparison.fluids[i].evaluation, gear_set, is_over)
-        .compute(draws, fluids[i]);
-  }
+  compute_drawn_figures(comparison, draws, gear_set, is_over, fluids);
   gear_sets.give_back(base.gear_set, physical.options, gear_set);
 
   v1::ComparePointsResponse out;

@@ -10,8 +10,8 @@
 
 namespace tribodyn::server {
 
-/// Largest number of points of one comparison: lubricants times conditions times (draws + 1). They
-/// take 1 to 10 s.
+/// Largest number of points of one comparison: lubricants times conditions times (draws + 1). If
+/// all of them are solved, they take 1 to 10 s.
 inline constexpr int kMaximumComparedPoints = 10'000;
 inline constexpr int kMostComparedLubricants = 8;
 /// Draws by default. The 95 % interval then ends at the fifth draw from either end.
@@ -39,10 +39,9 @@ std::optional<PointComparison> read_comparison(const v1::ComparePointsRequest& r
                                                const ResourceLookup& lookup,
                                                Violations& violations);
 
-/// Computes every lubricant at every condition with the stated inputs, with each input moved by its
-/// standard uncertainty both ways, and with all inputs drawn; the draws of a common error are the
-/// same for all lubricants. Equal requests give equal answers. Throws Cancelled soon after
-/// `is_over` returns true.
+/// Computes every lubricant at every condition by compute_drawn_figures(); the draws of a common
+/// error are the same for all lubricants. Equal requests give equal answers. Throws Cancelled soon
+/// after `is_over` returns true.
 v1::ComparePointsResponse compare_points(const PointComparison& comparison,
                                          PreparedGearSets& gear_sets,
                                          const std::function<bool()>& is_over);

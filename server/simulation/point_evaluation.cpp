@@ -400,10 +400,17 @@ std::vector<EvaluatedPoint> evaluate_conditions(const PointEvaluation& evaluatio
                                                 const v1::Lubricant& lubricant, Scene& physical,
                                                 const TemperatureErrors& errors,
                                                 const PointOptions& options,
-                                                const std::shared_ptr<PreparedGearSet>& gear_set) {
+                                                const std::shared_ptr<PreparedGearSet>& gear_set,
+                                                const std::vector<bool>* wanted) {
   std::vector<EvaluatedPoint> out(static_cast<std::size_t>(evaluation.conditions));
   physical.lubricant = to_core(lubricant);
-  for (const PointEvaluation::Group& group : evaluation.groups) {
+  for (PointEvaluation::Group group : evaluation.groups) {
+    if (wanted != nullptr) {
+      std::erase_if(group.conditions, [wanted](const auto& each) {
+        return !(*wanted)[static_cast<std::size_t>(each.first)];
+      });
+    }
+    if (group.conditions.empty()) continue;
     evaluate_group(group, evaluation.elasticities, lubricant, physical, errors, options, gear_set,
                    out);
   }

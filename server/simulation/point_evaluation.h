@@ -74,14 +74,16 @@ std::vector<std::string> candidate_parameter_names();
 /// Returns the options of all points of an evaluation, without progress.
 PointOptions point_options(const PointEvaluation& evaluation);
 
-/// Computes the points of a lubricant at all conditions of the evaluation by screen_point().
+/// Computes the points of a lubricant at all conditions of the evaluation by screen_point(), or
+/// only at those `wanted`: other points are then empty.
 /// `physical` is the scene, whose lubricant and temperatures are set here; `options` are its
 /// point_options() with progress set. Throws Cancelled as soon as that returns false.
 std::vector<EvaluatedPoint> evaluate_conditions(const PointEvaluation& evaluation,
                                                 const v1::Lubricant& lubricant, Scene& physical,
                                                 const TemperatureErrors& errors,
                                                 const PointOptions& options,
-                                                const std::shared_ptr<PreparedGearSet>& gear_set);
+                                                const std::shared_ptr<PreparedGearSet>& gear_set,
+                                                const std::vector<bool>* wanted = nullptr);
 
 /// The candidates of an evaluation, one at a time. Not safe for concurrent access.
 class CandidateScene {

@@ -2,11 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <optional>
+#include <random>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "core/uncertainty/drawn_value.h"
 #include "server/contract/resource_names.h"
+#include "server/resources/lubricant_parameters.h"
+#include "server/simulation/point_comparison.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {
@@ -55,6 +62,79 @@ inline v1::Lubricant fluid_with_alpha(double factor = 1, double relative_uncerta
   out.set_pressure_viscosity_coefficient_per_pascal(value);
   set_uncertainty(out, kAlpha, relative_uncertainty * value, is_estimate);
   out.set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN);
+  return out;
+}
+
+/// A request with the default draws.
+inline v1::ComparePointsRequest request_at(const std::vector<double>& speeds,
+                                           const std::vector<std::string>& lubricants) {
+  v1::ComparePointsRequest out;
+  for (const std::string& each : lubricants) out.add_lubricants(each);
+  for (const double speed : speeds) {
+    out.add_conditions()->set_speed_kilometres_per_hour(speed);
+  }
+  return out;
+}
+
+/// The answer to a valid request.
+inline v1::ComparePointsResponse compare(const v1::ComparePointsRequest& request,
+                                         const Fluids& fluids) {
+  Violations violations;
+  const auto comparison = read_comparison(request, fluids.lookup(), violations);
+  if (!comparison) throw std::runtime_error(violations.begin()->description);
+  PreparedGearSets gear_sets;
+  return compare_points(*comparison, gear_sets, [] { return false; });
+}
+
+/// A fluid by its data sheet: kinematic viscosities and density, all else estimated.
+inline v1::Lubricant data_sheet(double kinematic_viscosity_40, double kinematic_viscosity_100) {
+  v1::Lubricant out;
+  out.set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN);
+  auto& measured = *out.mutable_measurements();
+  measured.set_kinematic_viscosity_40_celsius_square_millimetres_per_second(kinematic_viscosity_40);
+  measured.set_kinematic_viscosity_100_celsius_square_millimetres_per_second(
+      kinematic_viscosity_100);
+  measured.set_density_15_celsius_kilograms_per_cubic_metre(868);
+  Violations violations;
+  complete_parameters(out, "", violations);
+  EXPECT_EQ(violations.size(), 0);
+  return out;
+}
+
+/// Inputs that err in tests of coverage, with the largest of their relative uncertainties.
+struct ErringInput {
+  const char* field;
+  double largest_uncertainty;
+};
+inline constexpr ErringInput kErring[] = {{kAlpha, 0.25},
+                                          {"relaxation_time_seconds", 0.6},
+                                          {"havriliak_negami_beta", 0.3},
+                                          {"limiting_shear_stress_coefficient", 0.2},
+                                          {"thermal_conductivity_watts_per_metre_kelvin", 0.1},
+                                          {"vogel_viscosity_prefactor_pascal_seconds", 0.05}};
+
+/// A lubricant as it is, and as a laboratory measures it.
+struct MeasuredFluid {
+  v1::Lubricant truth, measured;
+};
+
+inline MeasuredFluid measured_fluid(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::normal_distribution<double> normal;
+  MeasuredFluid out;
+  out.truth = seed<v1::Lubricant>("lubricants/paper-fluid-1");
+  out.measured = out.truth;
+  for (const ErringInput& input : kErring) {
+    const auto* field = v1::Lubricant::descriptor()->FindFieldByName(input.field);
+    const auto* reflection = out.truth.GetReflection();
+    const double value =
+        reflection->GetDouble(out.truth, field) * std::exp(0.2 * (2 * uniform(random) - 1));
+    const double relative = input.largest_uncertainty * uniform(random);
+    reflection->SetDouble(&out.truth, field, value);
+    const double measured = drawn_value(value, relative * value, normal(random));
+    reflection->SetDouble(&out.measured, field, measured);
+    set_uncertainty(out.measured, input.field, relative * measured);
+  }
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/celsius.h"
+#include "core/uncertainty/column_fit.h"
 #include "core/uncertainty/drawn_value.h"
 #include "core/uncertainty/input_draw.h"
 #include "core/uncertainty/normal_draws.h"
@@ -53,6 +54,53 @@ TEST(NormalDraws, OfDifferentVariablesAreAlmostUncorrelated) {
     }
   }
   EXPECT_LT(largest, 4 / std::sqrt(kDraws));  // 190 pairs: four standard deviations
+}
+
+/// Numbers between -1 and 1.
+Eigen::MatrixXd random_numbers(int rows, int columns) {
+  const NormalDraws draws(rows, columns, 5);
+  Eigen::MatrixXd out(rows, columns);
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < columns; ++j) out(i, j) = std::tanh(draws.at(i, j));
+  }
+  return out;
+}
+
+TEST(ColumnFit, FindsTheWeightsOfACombination) {
+  const Eigen::MatrixXd base = random_numbers(12, 3) * Eigen::Vector3d(1, 1e6, 1e-6).asDiagonal();
+  const Eigen::Vector3d weights(0.5, -2e-6, 1e6);
+  const ColumnFit fit = ColumnBase(base).fit(base * weights);
+  for (int j = 0; j < 3; ++j) EXPECT_NEAR(fit.weights(j) / weights(j), 1, 1e-4);
+  EXPECT_LT(fit.left_out_errors.norm(), 1e-3);
+}
+
+TEST(ColumnFit, ErrorsOfLeftOutRowsAreThoseOfFitsWithoutThem) {
+  const Eigen::MatrixXd numbers = random_numbers(12, 4);
+  const Eigen::MatrixXd base = numbers.leftCols(3);
+  const Eigen::VectorXd column = numbers.col(3);
+  const ColumnFit fit = ColumnBase(base).fit(column);
+  for (int left_out = 0; left_out < 12; ++left_out) {
+    Eigen::MatrixXd other_rows(11, 3);
+    Eigen::VectorXd other_numbers(11);
+    for (int i = 0, row = 0; i < 12; ++i) {
+      if (i == left_out) continue;
+      other_rows.row(row) = base.row(i);
+      other_numbers(row++) = column(i);
+    }
+    const ColumnFit without = ColumnBase(other_rows).fit(other_numbers);
+    EXPECT_NEAR(fit.left_out_errors(left_out),
+                column(left_out) - base.row(left_out).dot(without.weights), 1e-4);
+  }
+}
+
+TEST(ColumnFit, HasWeightsForMoreColumnsThanRowsAndForColumnsOfZeros) {
+  Eigen::MatrixXd base = random_numbers(6, 9);
+  base.col(4).setZero();
+  const ColumnFit fit = ColumnBase(base).fit(base.col(0));
+  EXPECT_LT(fit.weights.cwiseAbs().maxCoeff(), 2);
+  EXPECT_EQ(fit.weights(4), 0);
+  EXPECT_NEAR((base * fit.weights - base.col(0)).norm(), 0, 1e-3);
+  EXPECT_EQ(ColumnBase(base).fit(Eigen::VectorXd::Zero(6)).left_out_errors.norm(), 0);
 }
 
 TEST(Spread, OfNormalDrawsIsThatOfTheNormalDistribution) {

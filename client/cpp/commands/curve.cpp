@@ -72,7 +72,7 @@ void add_curve_flags(FlagList& list, CurveFlags& flags) {
   add_model_and_start_flags(list, study);
   list.toggle(
       "--no-uncertainty",
-      "Leave out the uncertainty of the inputs, which takes about seven times as long as the "
+      "Leave out the uncertainty of the inputs, which takes two to three times as long as the "
       "curve.",
       [&] { flags.leaves_out_uncertainty = true; });
   list.choices(

@@ -10,8 +10,8 @@ namespace tribodyn::client {
 namespace {
 
 /// Draws at each speed of a curve: the 95 % interval then ends between the second and third draw
-/// from either end, and a curve with its uncertainty takes about eight times the processor
-/// time of one without (a data sheet's oil at 25 speeds: 83 ms in place of 10.8 ms).
+/// from either end, and a curve with its uncertainty takes 2.5 to 3.7 times the processor
+/// time of one without (25 speeds; an oil of a data sheet takes most).
 constexpr int kCurveDraws = 99;
 constexpr int kSpeedsOfARequest = 100;  // the server computes 10000 points at once
 /// Largest relative difference of a curve's figure and that of the screened point, besides the
