@@ -47,12 +47,14 @@ std::string new_name(const std::string& id, const std::string& stated, Violation
   const std::string field = std::string(Kind<Resource>::kField) + "_id";
   const std::string& wrong = id.empty() ? stated : id;
   const std::string allowed = "allowed: letters, digits, '-', '_' and '.'";
-  const std::string meant = allowed_id(wrong);
+  const bool has_collection = wrong.starts_with(collection + "/");
+  const std::string wrong_id = has_collection ? wrong.substr(collection.size() + 1) : wrong;
+  const std::string meant = allowed_id(wrong_id);
   violations.push_back(
       {field, wrong.empty() ? field + " is not set; " + allowed
                             : fmt::format("\"{}\"; {}, at most {} bytes{}", plain_excerpt(wrong),
                                           allowed, kMaximumTextLength - collection.size() - 1,
-                                          meant.empty() || meant == wrong
+                                          meant.empty() || meant == wrong_id
                                               ? ""
                                               : fmt::format("; did you mean \"{}\"?", meant))});
   return {};

@@ -3,11 +3,11 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 
 #include "core/numerics/square.h"
-#include "core/refusal.h"
 #include "core/uncertainty/column_fit.h"
 #include "server/mapping/to_core.h"
 
@@ -221,7 +221,7 @@ class SharedDraws {
   SharedDraws(std::vector<FluidRows*> fluids, std::size_t draws)
       : fluids_(std::move(fluids)), draws_(draws), is_full_(fluids_.front()->conditions(), false) {
     for (std::size_t k = 0; k < is_full_.size(); ++k) {
-      double work = 1;
+      double work = has_figures(k, {}) ? 1 : std::numeric_limits<double>::infinity();
       for (const FluidRows* fluid : fluids_) work += fluid->work(k);
       work_.push_back(work);
     }
@@ -376,7 +376,7 @@ class SharedDraws {
 
   std::vector<FluidRows*> fluids_;
   std::size_t draws_;
-  std::vector<double> work_;          // of a point, by condition
+  std::vector<double> work_;          // of a point, by condition; infinite without figures
   Flags is_full_;                     // conditions that are solved with all draws and moves
   std::vector<std::size_t> base_;     // of these, those that no draw or move refuses
   std::vector<std::size_t> checked_;  // draws that are solved at all conditions

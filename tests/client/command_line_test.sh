@@ -307,6 +307,48 @@ expect 2 compare sheet-a --speed 40,60 --weights 1
 err_has '1 weights of 2 speeds'
 expect 1 compare sheet-a no-such-oil
 err_has 'lubricants/no-such-oil'
+expect 0 compare sheet-a sheet-b --speed 40,60 --sumps 40,90 --weights 2,1 --sump-weights 1,3 --draws 19 \
+  --plot "$folder/compared.svg"
+out_has 'Mean of 4 conditions'
+out_has '^ +60 +90 '
+out_has 'tribodyn explain sheet-.@1 sheet-.@1 --speed 40,60 --weights 6,3 --sump 90$'
+grep -q 'sheet-b@1, 90 C' "$folder/compared.svg" || fail 'no line for the second sump temperature'
+expect 2 compare sheet-a --sumps 40,90 --sump-weights 1
+err_has '1 weights of 2 sump temperatures'
+
+echo "--- from data sheets to a decision in three commands"
+cat >"$folder/oils.csv" <<'SHEETS'
+name,base oil,KV40 (mm2/s),KV100 (mm2/s),KV100 after shear (mm2/s),density 15 C (g/cm3)
+75W-90,PAO,103,15.1,14.2,0.868
+75W-85,PAO,66.5,11.4,10.9,0.857
+75W-80,Gr. III,52.4,9.1,,0.851
+75W-90-ester,Ester,98,15.6,15.3,0.921
+80W-90,Gr. I,138,14.3,,0.892
+SHEETS
+expect 0 lubricants import "$folder/oils.csv"
+out_has '^Next:  tribodyn compare 75W-90 75W-85 75W-80 75W-90-ester 80W-90 --speed 30,60,90,120$'
+expect 0 compare 75W-90 75W-85 75W-80 75W-90-ester 80W-90 --speed 30,60,90,120 --sump 80
+for answer in '^ +1 +75W-[0-9a-z-]+@1 +[0-9.]+ .* the best$' \
+  '^ +5 +80W-90@1 +[0-9.]+ +[0-9.]+ +[<0-9 ]+ % +[0-9.]+ +-?[0-9.]+ to [0-9.]+ ' \
+  '^  What to measure next, to tell ' \
+  '^  tribodyn explain 75W-[0-9a-z-]+@1 80W-90@1 --speed 30,60,90,120 --sump 80$' \
+  '^  tribodyn report 75W-90 75W-85 75W-80 75W-90-ester 80W-90 --sump 80 --html report.html$'; do
+  out_has "$answer"
+done
+tr -s ' \n' ' ' <"$folder/out" >"$folder/one_line"
+for answer in 'probability that it is the best of all 5: [0-9]+ %' 'cannot be told apart from it' \
+  'from 75W-[0-9a-z-]+@1: pressure viscosity coefficient[a-z 0-9@W-]*, which makes [0-9]+ %'; do
+  grep -qE "$answer" "$folder/one_line" || fail "compare: no '$answer'"
+done
+explain=$(grep -oE 'explain 75W-[0-9a-z-]+@1 80W-90@1 .*' "$folder/out")
+# shellcheck disable=SC2086
+expect 0 $explain --draws 19
+out_has '^  80W-90@1 loses more than 75W-'
+out_has '^difference +[0-9.]+ .* 100 '
+printf 'name,kv40\n75W-90 new,100\n' >"$folder/blank.csv"
+expect 1 lubricants import "$folder/blank.csv"
+err_has 'did you mean "75W-90-new"'
+
 echo "--- explanation"
 expect 0 explain paper-fluid-1 paper-fluid-3 --speed 40,100 --plot "$folder/why.svg"
 out_has '^viscosity and its temperature law +-?[0-9.]+ '

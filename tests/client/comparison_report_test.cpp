@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string>
 
+#include "client/cpp/plot/comparison_plot.h"
 #include "client/cpp/plot/curve_plot.h"
 #include "client/cpp/plot/explanation_plot.h"
 #include "client/cpp/report/curve_report.h"
@@ -101,6 +102,131 @@ TEST(ComparisonReport, SaysWhichLubricantLosesLess) {
   };
   EXPECT_TRUE(has_text(text(v1::ComparedDifference::LOWER), "b@2 loses less than a@1"));
   EXPECT_TRUE(has_text(text(v1::ComparedDifference::HIGHER), "b@2 loses more than a@1"));
+}
+
+/// Three lubricants at two speeds and two sump temperatures. "near" cannot be told apart from
+/// "good", the best, if `is_tie`; "bad" loses more.
+struct SampleRanking {
+  v1::ComparePointsRequest request;
+  v1::ComparePointsResponse response;
+
+  explicit SampleRanking(bool is_tie, const std::vector<double>& sumps = {80}) {
+    for (const char* name : {"bad", "near", "good"}) {
+      request.add_lubricants(std::string("lubricants/") + name);
+    }
+    for (const double sump : sumps) {
+      for (const double speed : {120, 40}) {
+        v1::PointCondition& condition = *request.add_conditions();
+        condition.set_speed_kilometres_per_hour(speed);
+        condition.set_sump_temperature_celsius(sump);
+        request.add_condition_weights(speed == 40 ? 3 : 1);
+      }
+    }
+    response.set_draws(199);
+    response.set_model_version("model-x");
+    const auto nearly =
+        is_tie ? v1::ComparedDifference::CANNOT_BE_TOLD_APART : v1::ComparedDifference::HIGHER;
+    add("lubricants/bad@1", 2.0, 0.0, v1::ComparedDifference::HIGHER);
+    add("lubricants/near@2", 1.1, 0.4, nearly);
+    add("lubricants/good@3", 1.0, 0.6, v1::ComparedDifference::VERDICT_UNSPECIFIED);
+  }
+
+ private:
+  void add(const char* revision, double mean, double probability,
+           v1::ComparedDifference::Verdict against_best) {
+    v1::ComparedLubricant& out = *response.add_lubricants();
+    out.set_lubricant_revision(revision);
+    out.set_best_probability(probability);
+    *out.mutable_mean_inefficiency_percent() = sample_figure(mean, 0.1, 0.001);
+    v1::ComparedDifference difference;
+    difference.set_verdict(against_best);
+    *difference.mutable_difference_percent() = sample_figure(mean - 1, 0.1, 0.002);
+    v1::InputShare& share = *difference.add_shares();
+    share.set_input("lubricant.pressure_viscosity_coefficient_per_pascal");
+    share.set_variance_share(0.96);
+    if (mean > 1) *out.mutable_mean_difference_from_best() = difference;
+    const bool is_first = response.lubricants_size() == 1;
+    if (!is_first) *out.mutable_mean_difference() = difference;
+    for (int k = 0; k < request.conditions_size(); ++k) {
+      *out.add_points()->mutable_inefficiency_energy_mean_percent() =
+          sample_figure(mean + 0.1 * k, 0.1, 0.001);
+      if (!is_first) *out.add_differences() = difference;
+    }
+  }
+};
+
+TEST(ComparisonReport, RanksThreeLubricantsLeastLossFirst) {
+  const SampleRanking sample(false);
+  const std::string table = comparison_report(sample.request, sample.response);
+  const auto row = [&table](const char* name) { return table.find(std::string(name) + "@"); };
+  EXPECT_LT(row("good"), row("near"));
+  EXPECT_LT(row("near"), row("bad"));
+  const std::string text = in_one_line(table);
+  EXPECT_TRUE(has_text(text, "Ranking by the mean inefficiency, energy mean, of 2 conditions"));
+  EXPECT_TRUE(has_text(text, "1 good@3 1.00 0.10 60 % the best")) << text;
+  EXPECT_TRUE(has_text(text, "3 bad@1 2.00 0.10 0 % 1.00 0.80 to 1.20 loses more")) << text;
+  EXPECT_TRUE(has_text(text,
+                       "good@3 loses least; probability that it is the best of all 3: 60 %. "
+                       "near@2, bad@1 lose more."))
+      << text;
+  EXPECT_FALSE(has_text(text, "What to measure next"));
+}
+
+TEST(ComparisonReport, SaysThatTheBestIsNotSureAndWhatToMeasure) {
+  const SampleRanking sample(true);
+  const std::string text = in_one_line(comparison_report(sample.request, sample.response));
+  EXPECT_TRUE(has_text(text,
+                       "Which one is the best is not sure: good@3 has the least mean; probability "
+                       "that it is the best of all 3: 60 %. near@2 cannot be told apart from it. "
+                       "bad@1 loses more."))
+      << text;
+  EXPECT_TRUE(has_text(text,
+                       "What to measure next, to tell near@2 from good@3: pressure viscosity "
+                       "coefficient of both, which makes 96 % of the variance"))
+      << text;
+}
+
+TEST(ComparisonReport, NamesTheNextCommandsForEachSumpTemperature) {
+  const SampleRanking sample(true, {40, 90});
+  const std::string text = comparison_report(sample.request, sample.response);
+  for (const char* command :
+       {"tribodyn explain good@3 near@2 --speed 120,40 --weights 1,3 --sump 40\n",
+        "tribodyn explain good@3 bad@1 --speed 120,40 --weights 1,3 --sump 90\n",
+        "tribodyn report bad near good --sump 40 --html report-40.html\n",
+        "tribodyn report bad near good --sump 90 --html report-90.html\n"}) {
+    EXPECT_TRUE(has_text(text, command)) << text;
+  }
+}
+
+TEST(ComparisonPlot, HasALineForEachLubricantAndDifferencesFromTheFirst) {
+  const SampleRanking sample(true);
+  const std::string svg = comparison_plot(sample.request, sample.response);
+  for (const char* part :
+       {"Which lubricant loses less, and how sure that is", ">bad@1<", ">near@2<", ">good@3<",
+        "Less bad@1, percentage points", "199 draws", "Model version model-x"}) {
+    EXPECT_TRUE(has_text(svg, part)) << part;
+  }
+  const auto count = [](const std::string& text, const std::string& part) {
+    int out = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+      ++out;
+    }
+    return out;
+  };
+  EXPECT_EQ(count(svg, "fill-opacity=\"0.13\""), 5) << "bands of three lubricants, two differences";
+  const SampleRanking sumps(true, {40, 90});
+  const std::string both = comparison_plot(sumps.request, sumps.response);
+  EXPECT_EQ(count(both, "fill-opacity=\"0.13\""), 10);
+  EXPECT_TRUE(has_text(both, ">good@3, 90 C<"));
+}
+
+TEST(ComparisonPlot, OfOneLubricantHasNoDifferences) {
+  const SampleRanking sample(true);
+  v1::ComparePointsResponse one = sample.response;
+  one.mutable_lubricants()->DeleteSubrange(1, 2);
+  const std::string svg = comparison_plot(sample.request, one);
+  EXPECT_TRUE(has_text(svg, "What the lubricant loses, and how sure that is"));
+  EXPECT_FALSE(has_text(svg, "percentage points"));
 }
 
 TEST(SensitivityReport, SortsParametersBySizeAndDrawsBarsToBothSides) {
@@ -216,6 +342,11 @@ TEST(ExplanationReport, ListsTheSharesLargestFirstWithTheirSum) {
   EXPECT_LT(text.find("viscosity and its temperature law"), text.find("pressure response"));
   EXPECT_TRUE(has_text(text, "Why b@2 differs from a@1")) << text;
   EXPECT_TRUE(has_text(text, "a@1 1.000 +/- 0.100 %, b@2 1.200 +/- 0.100 %")) << text;
+  EXPECT_TRUE(
+      has_text(in_one_line(text),
+               "b@2 loses more than a@1, mainly by its viscosity and its temperature law, "
+               "0.300 of 0.200 percentage points; against it: its pressure response, -0.100."))
+      << text;
   EXPECT_TRUE(has_text(text, "0.270 to 0.330")) << text;
   EXPECT_TRUE(has_text(text, "boundary film (equal)")) << text;
   EXPECT_TRUE(has_text(text, "viscosity and its temperature law with")) << text;

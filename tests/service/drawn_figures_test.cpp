@@ -74,7 +74,7 @@ void expect_as_alone(const std::vector<double>& speeds, const Fluids& fluids,
 }
 
 TEST(DrawnFigures, OfACurveTakeAThirdOfThePointsAndHaveTheIntervalsThatEachSpeedHasAlone) {
-  const std::vector<double> speeds = speeds_between(20, 140, kShortRun ? 15 : 5);
+  const std::vector<double> speeds = speeds_between(20, 140, kUnderSanitizer ? 15 : 5);
   std::mt19937_64 random(3);
   std::vector<v1::Lubricant> lubricants = {data_sheet(103, 15.1), data_sheet(30, 5.8),
                                            fluid_with_alpha()};
@@ -85,16 +85,16 @@ TEST(DrawnFigures, OfACurveTakeAThirdOfThePointsAndHaveTheIntervalsThatEachSpeed
     const auto curve = compare(curve_request(speeds, {"lubricants/oil"}), fluids);
     int solved = 0;
     for (const auto& point : curve.lubricants(0).points()) solved += point.solved_draws();
-    const int most = curve.lubricants(0).points_size() * 99 / (kShortRun ? 1 : 3);
+    const int most = curve.lubricants(0).points_size() * 99 / (kUnderSanitizer ? 1 : 3);
     EXPECT_LT(solved, most);
     EXPECT_EQ(least_solved_draws(curve.lubricants(0)), 12);
     expect_as_alone(speeds, fluids, curve, {"lubricants/oil"});
-    if (kShortRun) break;
+    if (kUnderSanitizer) break;
   }
 }
 
 TEST(DrawnFigures, OfLubricantsWhoseErrorsAreCommonHaveTheirDifference) {
-  const std::vector<double> speeds = speeds_between(30, 130, kShortRun ? 20 : 10);
+  const std::vector<double> speeds = speeds_between(30, 130, kUnderSanitizer ? 20 : 10);
   Fluids fluids;
   fluids.add("lubricants/a", data_sheet(103, 15.1));
   fluids.add("lubricants/b", data_sheet(95, 14.4));
@@ -121,7 +121,7 @@ TEST(DrawnFigures, OfLubricantsWhoseErrorsAreCommonHaveTheirDifference) {
 TEST(DrawnFigures, AreAllSolvedWhereSomeDrawsLoseContactAndOthersDoNot) {
   Fluids fluids;
   fluids.add("lubricants/oil", data_sheet(103, 15.1));
-  const std::vector<double> speeds = speeds_between(70, 86, kShortRun ? 2 : 1);
+  const std::vector<double> speeds = speeds_between(70, 86, kUnderSanitizer ? 2 : 1);
   const auto curve = compare(curve_request(speeds, {"lubricants/oil"}), fluids);
   expect_as_alone(speeds, fluids, curve, {"lubricants/oil"});
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -14,7 +15,8 @@ namespace {
 /// The request, and what all of its conditions have in common.
 struct CompareFlags {
   v1::ComparePointsRequest request;
-  std::vector<double> speeds;
+  std::vector<double> speeds, sumps;
+  std::vector<double> speed_weights, sump_weights;
   v1::PointCondition common;
   std::string plot_path;
 };
@@ -29,19 +31,22 @@ void add_compare_flags(FlagList& list, CompareFlags& flags) {
                request.add_lubricants(resource_name("lubricants", name));
              })
       .collection = "lubricants";
-  list.group("Conditions");
+  list.group("Conditions (every speed at every sump temperature)");
   list.numbers("--speed-kilometres-per-hour,--speed,--speeds", {"km/h", "0.1 to 400", "60"},
                "Vehicle speeds separated by commas",
                [&flags](double value) { flags.speeds.push_back(value); });
   list.numbers("--condition-weights,--weights", {"-", "1e-9 to 1e9", "equal"},
                "Weights of the speeds in the mean, one for each",
-               [&request](double value) { request.add_condition_weights(value); });
+               [&flags](double value) { flags.speed_weights.push_back(value); });
   list.number("--ascent-angle-degrees,--ascent", {"degrees", "-45 to 45", "0"},
               "Road slope, also in percent: 6%",
               [&flags](double value) { flags.common.set_ascent_angle_degrees(value); });
-  list.number("--sump-temperature-celsius,--sump", {"C", "-70 to 200", "40"},
-              "Temperature of the oil bath",
-              [&flags](double value) { flags.common.set_sump_temperature_celsius(value); });
+  list.numbers("--sump-temperature-celsius,--sump,--sumps", {"C", "-70 to 200", "40"},
+               "Temperatures of the oil bath separated by commas",
+               [&flags](double value) { flags.sumps.push_back(value); });
+  list.numbers("--sump-weights", {"-", "1e-9 to 1e9", "equal"},
+               "Weights of the temperatures of the oil bath in the mean, one for each",
+               [&flags](double value) { flags.sump_weights.push_back(value); });
   list.number("--inlet-temperature-rise-kelvin", {"K", "0 to 300", "20"},
               "Temperature rise from the oil bath to the inlet of the contact (eq 14)",
               [&flags](double value) { flags.common.set_inlet_temperature_rise_kelvin(value); });
@@ -89,14 +94,27 @@ void add_compare_flags(FlagList& list, CompareFlags& flags) {
                 flags.plot_path);
 }
 
+/// Sets every speed at every sump temperature, and the products of their weights.
+void set_compared_conditions(const CompareFlags& flags, v1::ComparePointsRequest& request) {
+  const std::vector<double> speeds = flags.speeds.empty() ? std::vector{60.0} : flags.speeds;
+  const bool has_weights = !flags.speed_weights.empty() || !flags.sump_weights.empty();
+  const std::size_t sumps = std::max<std::size_t>(flags.sumps.size(), 1);
+  for (std::size_t j = 0; j < sumps; ++j) {
+    for (std::size_t i = 0; i < speeds.size(); ++i) {
+      v1::PointCondition& condition = *request.add_conditions();
+      condition = flags.common;
+      condition.set_speed_kilometres_per_hour(speeds[i]);
+      if (!flags.sumps.empty()) condition.set_sump_temperature_celsius(flags.sumps[j]);
+      if (!has_weights) continue;
+      request.add_condition_weights((flags.speed_weights.empty() ? 1 : flags.speed_weights[i]) *
+                                    (flags.sump_weights.empty() ? 1 : flags.sump_weights[j]));
+    }
+  }
+}
+
 int run_compare(CompareFlags& flags, const CommonOptions& options) {
   v1::ComparePointsRequest& request = flags.request;
-  if (flags.speeds.empty()) flags.speeds.push_back(60);
-  for (const double speed : flags.speeds) {
-    v1::PointCondition& condition = *request.add_conditions();
-    condition = flags.common;
-    condition.set_speed_kilometres_per_hour(speed);
-  }
+  set_compared_conditions(flags, request);
   const v1::ComparePointsResponse response = options.connect().compare_points(request);
   switch (options.output_format) {
     case OutputFormat::kTable:
@@ -121,15 +139,17 @@ Command compare_command() {
   Command command{
       "compare",
       "which of two lubricants loses less, and how sure that is",
-      "Computes lubricants at the same speeds with the uncertainty of their inputs and prints them "
-      "side by side: inefficiency with the errors of inputs and solver, the difference with its "
+      "Computes lubricants at the same speeds and sump temperatures with the uncertainty of their "
+      "inputs and prints them side by side: inefficiency with the errors of inputs and solver, the "
+      "difference with its "
       "95 % interval, the probability that it is real, and what to measure to know better. Nothing "
       "is stored.",
       {"tribodyn compare paper-fluid-1 my-oil --speed 20,60,100 --sump 90",
        "tribodyn compare my-oil --speed 60",
        "tribodyn compare oil-a oil-b oil-c --speed 20,60,100,140 --plot compared.svg",
        "tribodyn compare my-oil their-oil --speed 30,60,120 --weights 1,2,1 "
-       "--estimate-correlation 0.8 --output csv"},
+       "--estimate-correlation 0.8 --output csv",
+       "tribodyn compare my-oil their-oil --speed 30,60,120 --sumps 40,90 --sump-weights 1,3"},
       {},
       {},
       {}};
@@ -138,15 +158,20 @@ Command compare_command() {
     if (flags->request.lubricants().empty()) {
       complaints.emplace_back("give lubricants: tribodyn compare A B");
     }
-    const std::size_t weights = static_cast<std::size_t>(flags->request.condition_weights_size());
-    const std::size_t speeds = flags->speeds.empty() ? 1 : flags->speeds.size();
-    if (weights != 0 && weights != speeds) {
-      complaints.push_back("--weights: " + std::to_string(weights) + " weights of " +
-                           std::to_string(speeds) + " speeds; give one for each speed");
-    }
+    const auto check_weights = [&complaints](const char* flag, std::size_t weights,
+                                             std::size_t values, const std::string& noun) {
+      values = std::max<std::size_t>(values, 1);  // the default
+      if (weights == 0 || weights == values) return;
+      complaints.push_back(std::string(flag) + ": " + std::to_string(weights) + " weights of " +
+                           std::to_string(values) + " " + noun + "s; give one for each " + noun);
+    };
+    check_weights("--weights", flags->speed_weights.size(), flags->speeds.size(), "speed");
+    check_weights("--sump-weights", flags->sump_weights.size(), flags->sumps.size(),
+                  "sump temperature");
   };
-  command.main_flags = {"--speed",    "--weights", "--ascent",  "--sump",
-                        "--gear-set", "--surface", "--vehicle", "--estimate-correlation",
+  command.main_flags = {"--speed",   "--weights",      "--ascent",
+                        "--sump",    "--sump-weights", "--gear-set",
+                        "--surface", "--vehicle",      "--estimate-correlation",
                         "--plot"};
   command.run = [flags](const CommonOptions& options) { return run_compare(*flags, options); };
   return command;

@@ -121,8 +121,9 @@ comma if commas do not separate the cells. Lines that begin with # are skipped.
       100,8.86
   One lubricant, surface or vehicle per row: these tables have a column "name". The other columns
     have the field names of JSON, those of measurements included, or names of data sheets: kv40,
-    kv100, kv100-sheared, density15. A header may have a unit in brackets, "Density15 (g/cm3)"; the
-    second row may contain units; a cell may have its own unit, "20/GPa". labels.KEY is a label.
+    kv100, kv100-sheared, density15, "base oil", "density 15 C". A header may have a unit in
+    brackets, "Density15 (g/cm3)"; the second row may contain units; a cell may have its own unit,
+    "20/GPa". labels.KEY is a label.
     FIELD.provenance, FIELD.source, FIELD.standard_uncertainty and FIELD.warning are the origin of a
     number. Classes of base oil may have any usual spelling: PAO, Gr. III, Ester. Brookfield
     viscosities are in columns "Brookfield -40 C", in mPa s, or in one cell of a column

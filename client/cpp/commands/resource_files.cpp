@@ -86,6 +86,8 @@ std::vector<FileResource> resources_of(Connection& connection, const ResourceKin
   return resources;
 }
 
+constexpr std::size_t kMostComparedAtOnce = 8;  ///< lubricants of one `tribodyn compare`
+
 /// Imports all resources or none.
 int import_resources(const ResourceKind& kind, const ImportFlags& flags,
                      const CommonOptions& options) {
@@ -122,6 +124,13 @@ int import_resources(const ResourceKind& kind, const ImportFlags& flags,
     if (const auto* lubricant = dynamic_cast<const v1::Lubricant*>(each.get())) {
       std::cout << characterisation_warnings(*lubricant);
     }
+  }
+  if (kind.word == "lubricants" && !flags.validate_only && done.size() <= kMostComparedAtOnce) {
+    std::cout << "\nNext:  tribodyn compare";
+    for (const ResourcePointer& each : done) {
+      std::cout << " " << printable(resource_id(text_field(*each, "name")));
+    }
+    std::cout << " --speed 30,60,90,120\n";
   }
   return kExitOk;
 }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 #include "client/cpp/plot/footer.h"
@@ -21,27 +20,47 @@ constexpr double kComparisonTop = 112;
 constexpr double kComparisonPanelHeight = 270;
 constexpr double kComparisonPanelPitch = 350;  ///< from one panel to the next
 
-/// Returns the numbers of the conditions by rising speed.
-std::vector<int> by_speed(const v1::ComparePointsRequest& request) {
-  std::vector<int> out(static_cast<std::size_t>(request.conditions_size()));
-  std::iota(out.begin(), out.end(), 0);
-  std::stable_sort(out.begin(), out.end(), [&request](int a, int b) {
-    return request.conditions(a).speed_kilometres_per_hour() <
-           request.conditions(b).speed_kilometres_per_hour();
-  });
+double plotted_sump(const v1::PointCondition& condition) {
+  return condition.has_sump_temperature_celsius() ? condition.sump_temperature_celsius() : 40;
+}
+
+/// The conditions at one sump temperature.
+struct PlottedSump {
+  double celsius;
+  std::vector<int> conditions;  ///< by rising speed
+};
+
+/// Returns the conditions by sump temperature, in the order of the request.
+std::vector<PlottedSump> by_sump(const v1::ComparePointsRequest& request) {
+  std::vector<PlottedSump> out;
+  for (int k = 0; k < request.conditions_size(); ++k) {
+    const double sump = plotted_sump(request.conditions(k));
+    auto found = std::find_if(out.begin(), out.end(),
+                              [sump](const PlottedSump& each) { return each.celsius == sump; });
+    if (found == out.end()) found = out.insert(out.end(), {sump, {}});
+    found->conditions.push_back(k);
+  }
+  for (PlottedSump& each : out) {
+    std::stable_sort(each.conditions.begin(), each.conditions.end(), [&request](int a, int b) {
+      return request.conditions(a).speed_kilometres_per_hour() <
+             request.conditions(b).speed_kilometres_per_hour();
+    });
+  }
   return out;
 }
 
-/// Returns the line of a figure over speed with its band; null is a condition without the figure.
-Series series_of_figure(const v1::ComparePointsRequest& request, std::size_t look_index,
+/// Returns the line of a figure of the lubricant at `index` over speed with its band; null is a
+/// condition without the figure. Sump temperatures differ in dashes and markers.
+Series series_of_figure(const v1::ComparePointsRequest& request, std::size_t index,
+                        std::size_t sump_index, const PlottedSump& sump,
                         const std::function<const v1::UncertainFigure*(int)>& figure_at) {
   constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
-  const Look look = look_of(look_index);
+  constexpr std::size_t kColours = 6, kDashes = 4;  // of look_of()
   Series out;
-  out.colour = look.colour;
-  out.dashes = look.dashes;
-  out.marker = look.marker;
-  for (const int k : by_speed(request)) {
+  out.colour = look_of(index).colour;
+  out.dashes = look_of((index / kColours + sump_index) % kDashes * kColours).dashes;
+  out.marker = look_of((index + sump_index) % kDistinctLooks).marker;
+  for (const int k : sump.conditions) {
     const v1::UncertainFigure* figure = figure_at(k);
     const bool has_band = figure != nullptr && figure->standard_uncertainty() > 0;
     out.x.push_back(request.conditions(k).speed_kilometres_per_hour());
@@ -63,17 +82,29 @@ Panel comparison_panel(int place, const std::string& title) {
   return out;
 }
 
+/// Returns "my-oil", or "my-oil, 90 C" where there are several sump temperatures.
+std::string plotted_label(const v1::ComparedLubricant& lubricant,
+                          const std::vector<PlottedSump>& sumps, const PlottedSump& sump) {
+  return resource_id(lubricant.lubricant_revision()) +
+         (sumps.size() == 1 ? "" : ", " + shortest(sump.celsius) + " C");
+}
+
 Panel figures_panel(const v1::ComparePointsRequest& request,
                     const v1::ComparePointsResponse& response) {
   Panel out = comparison_panel(0, "Mesh inefficiency (energy mean), % of input power");
+  const std::vector<PlottedSump> sumps = by_sump(request);
   for (int i = 0; i < response.lubricants_size(); ++i) {
     const v1::ComparedLubricant& lubricant = response.lubricants(i);
-    Series series = series_of_figure(request, static_cast<std::size_t>(i), [&](int k) {
-      const v1::ComparedPoint& point = lubricant.points(k);
-      return point.refusal_reason().empty() ? &point.inefficiency_energy_mean_percent() : nullptr;
-    });
-    series.label = resource_id(lubricant.lubricant_revision());
-    out.series.push_back(std::move(series));
+    for (std::size_t j = 0; j < sumps.size(); ++j) {
+      Series series =
+          series_of_figure(request, static_cast<std::size_t>(i), j, sumps[j], [&](int k) {
+            const v1::ComparedPoint& point = lubricant.points(k);
+            return point.refusal_reason().empty() ? &point.inefficiency_energy_mean_percent()
+                                                  : nullptr;
+          });
+      series.label = plotted_label(lubricant, sumps, sumps[j]);
+      out.series.push_back(std::move(series));
+    }
   }
   return out;
 }
@@ -84,18 +115,22 @@ Panel differences_panel(const v1::ComparePointsRequest& request,
       comparison_panel(1, "Less " + resource_id(response.lubricants(0).lubricant_revision()) +
                               ", percentage points");
   out.line_at = 0;
+  const std::vector<PlottedSump> sumps = by_sump(request);
   for (int i = 1; i < response.lubricants_size(); ++i) {
     const v1::ComparedLubricant& lubricant = response.lubricants(i);
-    Series series = series_of_figure(request, static_cast<std::size_t>(i), [&](int k) {
-      const v1::ComparedDifference& difference = lubricant.differences(k);
-      return difference.has_difference_percent() ? &difference.difference_percent() : nullptr;
-    });
-    for (const int k : by_speed(request)) {
-      series.hollow.push_back(lubricant.differences(k).verdict() ==
-                              v1::ComparedDifference::CANNOT_BE_TOLD_APART);
+    for (std::size_t j = 0; j < sumps.size(); ++j) {
+      Series series =
+          series_of_figure(request, static_cast<std::size_t>(i), j, sumps[j], [&](int k) {
+            const v1::ComparedDifference& difference = lubricant.differences(k);
+            return difference.has_difference_percent() ? &difference.difference_percent() : nullptr;
+          });
+      for (const int k : sumps[j].conditions) {
+        series.hollow.push_back(lubricant.differences(k).verdict() ==
+                                v1::ComparedDifference::CANNOT_BE_TOLD_APART);
+      }
+      series.label = plotted_label(lubricant, sumps, sumps[j]);
+      out.series.push_back(std::move(series));
     }
-    series.label = resource_id(lubricant.lubricant_revision());
-    out.series.push_back(std::move(series));
   }
   return out;
 }

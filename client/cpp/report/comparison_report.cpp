@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -217,12 +218,36 @@ std::string best_sentence(const std::vector<const v1::ComparedLubricant*>& ranke
     (is_apart ? apart : ties).push_back(lubricant_id(*each));
   }
   const std::string best = lubricant_id(*ranked.front());
-  return best + " loses least; probability that it is the best of all " +
-         std::to_string(ranked.size()) + ": " + share_text(ranked.front()->best_probability()) +
-         "." + (ties.empty() ? "" : " " + joined(ties, ", ") + " cannot be told apart from it.") +
+  return (ties.empty() ? best + " loses least"
+                       : "Which one is the best is not sure: " + best + " has the least mean") +
+         "; probability that it is the best of all " + std::to_string(ranked.size()) + ": " +
+         share_text(ranked.front()->best_probability()) + "." +
+         (ties.empty() ? "" : " " + joined(ties, ", ") + " cannot be told apart from it.") +
          (apart.empty()
               ? ""
               : " " + joined(apart, ", ") + (apart.size() == 1 ? " loses more." : " lose more."));
+}
+
+/// Returns what to measure to tell the first lubricant that cannot be told apart from the best;
+/// empty if there is none, or no input has an uncertainty.
+std::string decisive_measurement(const std::vector<const v1::ComparedLubricant*>& ranked) {
+  for (const v1::ComparedLubricant* each : ranked) {
+    const v1::ComparedDifference& difference = each->mean_difference_from_best();
+    if (difference.verdict() != v1::ComparedDifference::CANNOT_BE_TOLD_APART) continue;
+    if (difference.shares().empty() || !(difference.shares(0).variance_share() > 0)) continue;
+    const v1::InputShare& share = difference.shares(0);
+    const bool is_of_both =
+        share.lubricant_revision().empty() && share.input().starts_with("lubricant.");
+    return "What to measure next, to tell " + lubricant_id(*each) + " from " +
+           lubricant_id(*ranked.front()) + ": " + input_text(share.input()) +
+           (is_of_both ? " of both"
+            : share.lubricant_revision().empty()
+                ? ""
+                : " of " + resource_id(share.lubricant_revision())) +
+           ", which makes " + share_text(share.variance_share()) +
+           " of the variance of their difference.";
+  }
+  return "";
 }
 
 std::string ranking_table(const std::vector<const v1::ComparedLubricant*>& ranked) {
@@ -252,43 +277,72 @@ std::string ranking_table(const std::vector<const v1::ComparedLubricant*>& ranke
   return table.text();
 }
 
-/// Returns the flags of the scene and the conditions of a request.
-std::string scene_flags(const v1::ComparePointsRequest& request) {
-  std::vector<std::string> speeds, weights;
+/// Returns the sump temperatures of a request, each once.
+std::vector<double> sumps_of(const v1::ComparePointsRequest& request) {
+  std::vector<double> out;
   for (const v1::PointCondition& each : request.conditions()) {
-    speeds.push_back(shortest(each.speed_kilometres_per_hour()));
+    const double sump = sump_of(each);
+    if (std::find(out.begin(), out.end(), sump) == out.end()) out.push_back(sump);
   }
-  for (const double each : request.condition_weights()) weights.push_back(shortest(each));
-  std::string out = " --speed " + joined(speeds, ",");
-  if (!weights.empty()) out += " --weights " + joined(weights, ",");
+  return out;
+}
+
+/// Returns the flags of speeds and weights of a request at one sump temperature.
+std::string speed_flags(const v1::ComparePointsRequest& request, double sump) {
+  std::vector<std::string> speeds, weights;
+  for (int k = 0; k < request.conditions_size(); ++k) {
+    if (sump_of(request.conditions(k)) != sump) continue;
+    speeds.push_back(shortest(request.conditions(k).speed_kilometres_per_hour()));
+    if (k < request.condition_weights_size()) {
+      weights.push_back(shortest(request.condition_weights(k)));
+    }
+  }
+  const bool are_equal =
+      std::adjacent_find(weights.begin(), weights.end(), std::not_equal_to<>()) == weights.end();
+  return " --speed " + joined(speeds, ",") +
+         (are_equal ? "" : " --weights " + joined(weights, ","));
+}
+
+/// Returns the flags of the scene of a request at one sump temperature.
+std::string scene_flags(const v1::ComparePointsRequest& request, double sump) {
+  std::string out;
   const v1::PointCondition& first = request.conditions(0);
-  if (first.has_sump_temperature_celsius()) {
-    out += " --sump " + shortest(first.sump_temperature_celsius());
-  }
+  if (first.has_sump_temperature_celsius()) out += " --sump " + shortest(sump);
   if (first.ascent_angle_degrees() != 0) {
     out += " --ascent " + shortest(first.ascent_angle_degrees());
+  }
+  if (first.has_inlet_temperature_rise_kelvin()) {
+    out += " --inlet-temperature-rise-kelvin " + shortest(first.inlet_temperature_rise_kelvin());
   }
   for (const auto& [flag, name] :
        {std::pair{" --gear-set ", request.gear_set()}, std::pair{" --surface ", request.surface()},
         std::pair{" --vehicle ", request.vehicle()}}) {
     if (!name.empty()) out += flag + resource_id(name);
   }
-  return out;
+  return out + (request.sheared_lubricant() ? " --condition sheared" : "");
 }
 
-/// Returns the commands that go on from a comparison.
+/// Returns the commands that go on from a comparison at each sump temperature: why the best differs
+/// from the second and the last, and the page of all.
 std::string next_commands(const v1::ComparePointsRequest& request,
                           const std::vector<const v1::ComparedLubricant*>& ranked) {
   if (ranked.size() < 2) return "";
-  const std::string condition = request.sheared_lubricant() ? " --condition sheared" : "";
-  std::string all;
+  std::string all, why, pages;
   for (const std::string& each : request.lubricants()) all += " " + resource_id(each);
-  const std::string flags = scene_flags(request);
-  return "Why they differ:\n  tribodyn explain " + lubricant_id(*ranked[0]) + " " +
-         lubricant_id(*ranked[1]) + flags + condition +
-         (condition.empty() ? "" : " --other-condition sheared") +
-         "\nAll of it on one page, with plots:\n  tribodyn report" + all + condition +
-         " --html report.html\n";
+  const std::vector<double> sumps = sumps_of(request);
+  for (const double sump : sumps) {
+    const std::string scene = scene_flags(request, sump);
+    std::vector<const v1::ComparedLubricant*> others = {ranked[1]};
+    if (ranked.size() > 2) others.push_back(ranked.back());
+    for (const v1::ComparedLubricant* other : others) {
+      why += "  tribodyn explain " + lubricant_id(*ranked[0]) + " " + lubricant_id(*other) +
+             speed_flags(request, sump) + scene +
+             (request.sheared_lubricant() ? " --other-condition sheared" : "") + "\n";
+    }
+    pages += "  tribodyn report" + all + scene + " --html report" +
+             (sumps.size() == 1 ? "" : "-" + shortest(sump)) + ".html\n";
+  }
+  return "Why they differ:\n" + why + "All of it on one page, with plots:\n" + pages;
 }
 
 /// Returns the figure times `factor`, plus `offset`.
@@ -367,6 +421,7 @@ std::string comparison_report(const v1::ComparePointsRequest& request,
            ranking_table(order) + "\n";
     Sheet best;
     best.remark(best_sentence(order));
+    best.remark(decisive_measurement(order));
     out += best.text() + "\n";
   }
   for (int i = 1; i < response.lubricants_size(); ++i) {

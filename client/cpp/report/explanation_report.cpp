@@ -15,6 +15,9 @@ constexpr int kCombinationsOfGroups = 64;
 /// Most conditions whose shares the report lists side by side.
 constexpr int kListedConditions = 10;
 
+/// Least share of a difference that a group needs to be named as its cause [-].
+constexpr double kSmallestNamedCause = 0.1;
+
 /// Returns the decimal places with which an error has two significant digits.
 int decimals_of(double error) {
   if (!(error > 0) || !std::isfinite(error)) return 4;
@@ -148,6 +151,29 @@ std::string contact_loss_text(const v1::ExplainPointsRequest& request,
                    ": shares there depend on where the vibration sets in.";
 }
 
+/// Returns which lubricant loses more and by which groups of parameters most.
+std::string main_cause_text(const v1::DifferenceExplanation& mean, const std::string& a,
+                            const std::string& b) {
+  const v1::DrawnFigure& difference = mean.inefficiency_difference_percent();
+  const double total = difference.value();
+  if (std::abs(total) <= difference.solver_error()) return "";
+  const int decimals = decimals_of(difference);
+  std::string with, against;
+  for (const v1::DifferenceCause& cause : ranked_causes(mean)) {
+    const double share = cause.inefficiency_percent().shapley_value().value();
+    if (std::abs(share) < kSmallestNamedCause * std::abs(total)) continue;
+    std::string& text = (share > 0) == (total > 0) ? with : against;
+    if (text.empty()) text = parameter_group_text(cause.group()) + ", " + fixed(share, decimals);
+  }
+  const bool is_sure = difference.interval_minimum() > 0 || difference.interval_maximum() < 0;
+  return b + (total > 0 ? " loses more than " : " loses less than ") + a + ", mainly by its " +
+         with + " of " + fixed(total, decimals) + " percentage points" +
+         (against.empty() ? "" : "; against it: its " + against) + "." +
+         (is_sure ? ""
+                  : " Which of the two loses more is not sure: the 95 % interval of the difference "
+                    "contains 0.");
+}
+
 }  // namespace
 
 std::string parameter_group_text(v1::ParameterGroup group) {
@@ -204,6 +230,7 @@ std::string explanation_report(const v1::ExplainPointsRequest& request,
                " %, difference " + with_uncertainty(difference, decimals) +
                " percentage points; solver error of the difference at most " +
                fixed(difference.solver_error(), decimals_of(difference.solver_error())) + ".");
+  sheet.remark(main_cause_text(mean, a, b));
   Sheet notes;
   notes.remark(
       "share: what a group of " + b +

@@ -70,6 +70,37 @@ struct HeaderForm {
   std::string bare_unit;
 };
 
+/// Headers that data sheets have besides the names of flags, as plain_word() writes them, by field.
+const std::multimap<std::string, std::string>& sheet_headers() {
+  static const std::multimap<std::string, std::string> kAll = [] {
+    std::multimap<std::string, std::string> out = {{"base_oil_class", "base_oil"},
+                                                   {"base_oil_class", "base_oil_type"},
+                                                   {"base_oil_class", "base_stock"}};
+    const auto add = [&out](const char* field, const std::vector<std::string>& quantities,
+                            const std::vector<std::string>& temperatures) {
+      for (const std::string& quantity : quantities) {
+        for (const std::string& temperature : temperatures) {
+          for (const char* end : {"", "_c", "_celsius"}) {
+            out.emplace(field, quantity + temperature + end);
+            out.emplace(field, quantity + "_" + temperature + end);
+            out.emplace(field, quantity + "_at_" + temperature + end);
+          }
+        }
+      }
+    };
+    const std::vector<std::string> viscosities = {"kv", "kinematic_viscosity"};
+    add("kinematic_viscosity_40_celsius_square_millimetres_per_second", viscosities, {"40"});
+    add("kinematic_viscosity_100_celsius_square_millimetres_per_second", viscosities, {"100"});
+    add("density_15_celsius_kilograms_per_cubic_metre", {"density"}, {"15"});
+    for (const char* header : {"kv100_after_shear", "kv_100_after_shear", "kv_100_sheared",
+                               "kv100_after_shear_test", "kv100_sheared"}) {
+      out.emplace("sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second", header);
+    }
+    return out;
+  }();
+  return kAll;
+}
+
 std::vector<HeaderForm> forms_of(const RowColumn& column) {
   std::vector<HeaderForm> forms = {{plain_word(header_of(column)), column.bare_unit}};
   if (column.kind == Kind::kMeasurements || column.kind == Kind::kProvenance) return forms;
@@ -80,6 +111,10 @@ std::vector<HeaderForm> forms_of(const RowColumn& column) {
   for (const TradeName& trade : trade_names(*column.field)) {
     forms.push_back({plain_word(trade.word), trade.bare_unit});
   }
+  const std::string bare_unit =
+      trade_names(*column.field).empty() ? "" : trade_names(*column.field).front().bare_unit;
+  const auto [begin, end] = sheet_headers().equal_range(name);
+  for (auto at = begin; at != end; ++at) forms.push_back({at->second, bare_unit});
   return forms;
 }
 
