@@ -160,7 +160,7 @@ expect 2 traction
 expect 0 traction paper-fluid-1 paper-fluid-2 --map slide-roll-ratio,pressure --plot "$folder/map.svg"
 out_has '^paper-fluid-1@1: Traction coefficient$'
 out_has '^across: Slide-roll ratio, % of the mean speed; down: Mean pressure, GPa$'
-out_has '^ +1\.5 +0 '
+out_has '^1\.5 +0 '
 [ -s "$folder/map.svg" ] || fail "traction draws no map"
 expect 0 film paper-fluid-1 --map temperature,speed --temperature 40,60,90 --speed 0.1,1 --output csv
 out_lines 7
