@@ -2,36 +2,20 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <optional>
 
 #include "server/application/campaigns.h"
 #include "server/application/column_source.h"
 #include "server/application/errors.h"
+#include "server/application/table_columns.h"
 #include "server/contract/constraints.h"
 #include "server/mapping/history_columns.h"
 #include "server/simulation/campaign_columns.h"
-#include "server/simulation/solver_defaults.h"
 
 namespace tribodyn::server {
 namespace {
 
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
-
-/// A column of a campaign as clients read it.
-struct TableColumn {
-  enum class Kind {
-    kStored,        ///< by number (campaign_columns.h)
-    kCandidate,     ///< the number of the candidate
-    kCondition,     ///< the number of the condition
-    kPerCandidate,  ///< one value for each candidate
-    kPerCondition,  ///< one value for each condition
-  };
-  std::string name;
-  Kind kind = Kind::kStored;
-  int number = 0;
-  std::vector<double> values = {};
-};
 
 /// Rows of some columns.
 struct TableWindow {
@@ -105,92 +89,6 @@ class CampaignSource final : public ColumnSource<v1::ReadCampaignResponse> {
   const std::int64_t conditions_;
   const std::int64_t total_rows_;
   const TableWindow window_;
-};
-
-std::vector<double> values_of(const google::protobuf::RepeatedField<double>& values) {
-  return {values.begin(), values.end()};
-}
-
-/// Returns a column of each field of the conditions, defaults written out.
-std::vector<TableColumn> condition_columns(const v1::Campaign& request) {
-  using enum TableColumn::Kind;
-  TableColumn speed{"speed_kilometres_per_hour", kPerCondition},
-      ascent{"ascent_angle_degrees", kPerCondition},
-      sump{"sump_temperature_celsius", kPerCondition},
-      rise{"inlet_temperature_rise_kelvin", kPerCondition};
-  for (const v1::PointCondition& each : request.conditions()) {
-    speed.values.push_back(each.speed_kilometres_per_hour());
-    ascent.values.push_back(each.ascent_angle_degrees());
-    sump.values.push_back(each.has_sump_temperature_celsius() ? each.sump_temperature_celsius()
-                                                              : kDefaultSumpTemperatureCelsius);
-    rise.values.push_back(each.has_inlet_temperature_rise_kelvin()
-                              ? each.inlet_temperature_rise_kelvin()
-                              : kDefaultInletTemperatureRiseKelvin);
-  }
-  return {std::move(speed), std::move(ascent), std::move(sump), std::move(rise)};
-}
-
-/// Finds the columns of a campaign. It reads the columns of candidates when one is asked for.
-class TableColumns {
- public:
-  TableColumns(Application& application, const StoredCampaign& stored, const CallContext& call)
-      : application_(application), stored_(stored), call_(call) {
-    request_.ParseFromString(stored.request);
-  }
-
-  std::vector<TableColumn> figures() const {
-    std::vector<TableColumn> out;
-    for (std::string& name : campaign_columns(request_)) {
-      const int number = static_cast<int>(out.size());
-      out.push_back({std::move(name), TableColumn::Kind::kStored, number});
-    }
-    return out;
-  }
-
-  std::optional<TableColumn> find(const std::string& name) {
-    std::vector<TableColumn> simple = figures();
-    simple.push_back({"candidate", TableColumn::Kind::kCandidate});
-    simple.push_back({"condition", TableColumn::Kind::kCondition});
-    for (TableColumn& each : condition_columns(request_)) simple.push_back(std::move(each));
-    for (TableColumn& each : simple) {
-      if (each.name == name) return std::move(each);
-    }
-    for (const v1::CandidateColumn& each : table().candidate_columns()) {
-      if (each.path() != name) continue;
-      return TableColumn{name, TableColumn::Kind::kPerCandidate, 0, values_of(each.values())};
-    }
-    for (const v1::CandidateAttribute& each : table().candidate_attributes()) {
-      if (each.name() != name || each.values().empty()) continue;
-      return TableColumn{name, TableColumn::Kind::kPerCandidate, 0, values_of(each.values())};
-    }
-    return std::nullopt;
-  }
-
-  std::vector<std::string> names() {
-    std::vector<std::string> out = campaign_columns(request_);
-    out.insert(out.end(), {"candidate", "condition"});
-    for (const TableColumn& each : condition_columns(request_)) out.push_back(each.name);
-    for (const v1::CandidateColumn& each : table().candidate_columns()) out.push_back(each.path());
-    for (const v1::CandidateAttribute& each : table().candidate_attributes()) {
-      if (!each.values().empty()) out.push_back(each.name());
-    }
-    return out;
-  }
-
- private:
-  const v1::Campaign& table() {
-    if (!table_) {
-      table_.emplace();
-      table_->ParseFromString(application_.store.candidate_table(stored_.id, call_.limits));
-    }
-    return *table_;
-  }
-
-  Application& application_;
-  const StoredCampaign& stored_;
-  const CallContext& call_;
-  v1::Campaign request_;
-  std::optional<v1::Campaign> table_;
 };
 
 std::optional<TableWindow> table_window(Application& application, const StoredCampaign& stored,

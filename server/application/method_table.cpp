@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "server/application/campaign_decisions.h"
 #include "server/application/campaigns.h"
 #include "server/application/contacts.h"
 #include "server/application/imports.h"
@@ -192,6 +193,11 @@ std::vector<Method> rows() {
       unary(Scope::kWrite, kWrite, resume_campaign),
       unary(Scope::kWrite, kWrite, cancel_campaign),
       unary(Scope::kWrite, kWrite, delete_campaign),
+      unary<v1::RankCandidatesRequest, v1::RankCandidatesResponse>(Scope::kRead, kCompute,
+                                                                   rank_candidates),
+      unary(Scope::kRead, kSearch, find_pareto_candidates),
+      unary(Scope::kRead, kSearch, estimate_candidate_effects),
+      unary(Scope::kWrite, kWrite, promote_candidate),
       stream(Scope::kRead, watch_campaign),
       stream(Scope::kRead, read_campaign),
   };

@@ -81,4 +81,12 @@ void add_campaign_row(const PointEvaluation& evaluation, const EvaluatedPoint& p
   for (; next < columns.size(); ++next) columns[next].push_back(kNone);
 }
 
+double campaign_value(const PointEvaluation& evaluation, const EvaluatedPoint& point, int column) {
+  std::vector<std::vector<double>> row(
+      kCampaignColumns.size() + (evaluation.with_contact ? kContactFigureColumns.size() : 0) +
+      (evaluation.elasticities.empty() ? 0 : 1 + evaluation.elasticities.size()));
+  add_campaign_row(evaluation, point, 0, row);
+  return row[static_cast<std::size_t>(column)].front();
+}
+
 }  // namespace tribodyn::server

@@ -50,4 +50,8 @@ std::vector<std::string> campaign_columns(const v1::Campaign& campaign);
 void add_campaign_row(const PointEvaluation& evaluation, const EvaluatedPoint& point, int refusal,
                       std::vector<std::vector<double>>& columns);
 
+/// Returns the value of a column in the row of a point; NaN if the point has none. `column`: a
+/// number below that of all columns of the evaluation.
+double campaign_value(const PointEvaluation& evaluation, const EvaluatedPoint& point, int column);
+
 }  // namespace tribodyn::server

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "server/contract/constraints.h"
+#include "server/contract/resource_names.h"
 
 namespace tribodyn::server {
 namespace {

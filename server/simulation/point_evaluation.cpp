@@ -49,11 +49,6 @@ const std::map<std::string, const FieldDescriptor*>& candidate_parameters() {
   return out;
 }
 
-std::string unknown_parameter_text(const std::string& path) {
-  return fmt::format("\"{}\" is no parameter of a lubricant or surface that the model uses{}",
-                     plain_excerpt(path), meant_text(path, candidate_parameter_names()));
-}
-
 /// Checks the values of a column against the allowed range of its parameter.
 void check_values(const v1::CandidateColumn& column, const FieldDescriptor& field,
                   const std::string& path, Violations& violations) {
@@ -351,6 +346,16 @@ std::vector<std::string> candidate_parameter_names() {
   std::vector<std::string> out;
   for (const auto& [name, field] : candidate_parameters()) out.push_back(name);
   return out;
+}
+
+const FieldDescriptor* find_candidate_parameter(const std::string& path) {
+  const auto found = candidate_parameters().find(path);
+  return found == candidate_parameters().end() ? nullptr : found->second;
+}
+
+std::string unknown_parameter_text(const std::string& path) {
+  return fmt::format("\"{}\" is no parameter of a lubricant or surface that the model uses{}",
+                     plain_excerpt(path), meant_text(path, candidate_parameter_names()));
 }
 
 std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& request,

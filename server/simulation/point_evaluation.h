@@ -70,6 +70,10 @@ std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& requ
 /// Returns "lubricant.relaxation_time_seconds" and so on for each parameter in which candidates may
 /// differ, sorted.
 std::vector<std::string> candidate_parameter_names();
+/// Returns the field of such a parameter; null if there is none of this name.
+const google::protobuf::FieldDescriptor* find_candidate_parameter(const std::string& path);
+/// Returns the sentence that there is no such parameter, with the name that may be meant.
+std::string unknown_parameter_text(const std::string& path);
 
 /// Returns the options of all points of an evaluation, without progress.
 PointOptions point_options(const PointEvaluation& evaluation);

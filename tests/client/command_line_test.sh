@@ -15,7 +15,8 @@ for command in point curve compare explain report screen design sensitivities hi
   schema completion help "lubricants list" \
   "lubricants get" "lubricants create" "gear-sets update" "surfaces import" "vehicles export" \
   "jobs list" "jobs get" "jobs watch" "jobs wait" "jobs cancel" "jobs rerun" "campaigns list" \
-  "campaigns show" "campaigns pause" "campaigns resume" "campaigns cancel" "campaigns delete" "campaigns columns"; do
+  "campaigns show" "campaigns pause" "campaigns resume" "campaigns cancel" "campaigns delete" "campaigns columns" \
+  "campaigns rank" "campaigns pareto" "campaigns effects" "campaigns promote"; do
   # shellcheck disable=SC2086  # the words of a command
   expect 0 $command --help
   out_has '^Examples$'
@@ -494,6 +495,27 @@ expect 0 campaigns columns "$campaign" --row-count 2 --output json
 out_is_json
 expect 1 campaigns columns "$campaign" --columns mesh_los_power_watts
 err_has 'mesh_loss_power_watts'
+expect 0 campaigns rank "$campaign" --where 'cost<=5' --uncertainty relaxation-time=30%
+out_has '^ *1 +[0-9]+ +[0-9]+ +[0-9]+\.[0-9]+ +[0-9.e-]+ +50\.0 +best'
+out_has 'tie'
+out_has '5 of 5 candidates'
+out_has '395 violate a constraint'
+expect 0 campaigns rank "$campaign" --count 3 --output csv
+out_lines 4
+out_is_csv
+expect 0 campaigns pareto "$campaign" --least cost
+out_has 'No other candidate is better in both'
+expect 2 campaigns pareto "$campaign"
+err_has 'give one or two of --least FIGURE and --most FIGURE'
+expect 2 campaigns rank "$campaign" --least cost:median --where cost=3
+err_has 'is not COLUMN, COLUMN:min, COLUMN:max or COLUMN:mean'
+err_has 'is not FIGURE>=VALUE or FIGURE<=VALUE'
+expect 0 campaigns effects "$campaign"
+out_has 'cost \(FOLLOWS_FROM_OTHERS\)'
+expect 0 campaigns promote "$campaign" --candidate 7 --lubricant promoted-oil
+out_has 'created lubricants/promoted-oil'
+expect 1 campaigns promote "$campaign" --candidate 7 --lubricant promoted-oil
+err_has 'lubricants/promoted-oil exists already'
 expect 0 campaigns pause "$campaign"
 err_has 'had already ended'
 expect 1 campaigns resume "$campaign"

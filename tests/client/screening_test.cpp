@@ -326,35 +326,21 @@ TEST(Candidates, MayStateTheirUncertainties) {
               HasSubstr("is below 0"));
 }
 
-TEST(Screening, InputsThatDifferErrAloneAndThoseOfTheBaseTogether) {
-  Screening screening = sample_screening();
-  v1::Lubricant& lubricant = screening.bases.lubricant;
-  lubricant.set_relaxation_time_seconds(4e-7);
-  lubricant.set_vogel_temperature_coefficient_kelvin(900);
-  for (const char* field : {"relaxation_time_seconds", "vogel_temperature_coefficient_kelvin"}) {
-    v1::ParameterProvenance& entry = *lubricant.add_provenance();
-    entry.set_field(field);
-    entry.set_standard_uncertainty(1e-8);
-  }
-  const auto* friction =
-      v1::Surface::descriptor()->FindFieldByName("asperity_friction_coefficient");
-  const std::vector<UncertainInput> inputs = uncertain_inputs(screening, {{friction, 0.1, true}});
-  ASSERT_EQ(inputs.size(), 2U);  // the law of viscosity is left out
-  EXPECT_TRUE(inputs[0].is_shared);
-  EXPECT_THAT(inputs[0].uncertainties, ElementsAre(1e-8, 1e-8, 1e-8));
-  EXPECT_FALSE(inputs[1].is_shared);
-  EXPECT_THAT(
-      inputs[1].uncertainties,
-      ElementsAre(DoubleNear(0.01, 1e-15), DoubleNear(0.008, 1e-15), DoubleNear(0.02, 1e-15)));
-}
-
 TEST(Screening, NamesTies) {
   const Screening screening = sample_screening();
   const std::vector<CandidateFigures> ranking = ranked(screening);
-  const auto* friction =
-      v1::Surface::descriptor()->FindFieldByName("asperity_friction_coefficient");
-  const std::vector<UncertainInput> inputs = {{friction, false, {0.1, 0.1, 0.1}}};
-  const RankingConfidence tied = ranking_confidence(ranking, inputs, {{0.8}, {0.6}}, 0.95);
+  v1::RankCandidatesResponse answer;
+  answer.set_compared(2);
+  answer.add_own_uncertain_parameters("surface.asperity_friction_coefficient");
+  for (std::size_t i = 0; i < 2; ++i) {
+    v1::RankedCandidate& each = *answer.add_candidates();
+    each.set_candidate(static_cast<int>(ranking[i].candidate));
+    each.mutable_comparison()->set_standard_uncertainty(i == 0 ? 0.8 : 0.6);
+    each.mutable_comparison()->set_worse_probability(i == 0 ? 0.5 : 0.7);
+    each.mutable_comparison()->set_tied(true);
+  }
+  const std::vector<std::size_t> candidates = {0, 1, 2};
+  const RankingConfidence tied = ranking_confidence(ranking, candidates, answer, 0.95);
   ASSERT_EQ(tied.of.size(), 2U);
   EXPECT_TRUE(tied.of[1]->is_tied);
   EXPECT_DOUBLE_EQ(tied.of[1]->standard_uncertainty, 0.6);
@@ -363,14 +349,17 @@ TEST(Screening, NamesTies) {
   EXPECT_THAT(report, HasSubstr("tie, "));
   EXPECT_THAT(screening_report(screening, ranking, tied, 5, OutputFormat::kCsv),
               HasSubstr(",is_tied_with_best,"));
-  const RankingConfidence sure = ranking_confidence(ranking, inputs, {{0.08}, {0.06}}, 0.95);
+  answer.mutable_candidates(1)->mutable_comparison()->set_worse_probability(0.999);
+  answer.mutable_candidates(1)->mutable_comparison()->set_tied(false);
+  const RankingConfidence sure = ranking_confidence(ranking, candidates, answer, 0.95);
   EXPECT_FALSE(sure.of[1]->is_tied);
   EXPECT_THAT(screening_report(screening, ranking, sure, 5, OutputFormat::kTable),
               HasSubstr("worse, > 99 %"));
-  // Without a figure of the best one nothing can be said.
-  EXPECT_FALSE(ranking_confidence(ranking, inputs, {{std::nan("")}, {0.6}}, 0.95).of[1]);
-  RankingConfidence none;
-  none.has_no_inputs = true;
+  // Without a comparison nothing can be said.
+  answer.mutable_candidates(1)->clear_comparison();
+  EXPECT_FALSE(ranking_confidence(ranking, candidates, answer, 0.95).of[1]);
+  const RankingConfidence none = ranking_confidence(ranking, candidates, {}, 0.95);
+  EXPECT_TRUE(none.has_no_inputs);
   EXPECT_THAT(screening_report(screening, ranking, none, 5, OutputFormat::kTable),
               HasSubstr("no ties can be found"));
 }

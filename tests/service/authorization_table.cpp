@@ -23,7 +23,8 @@ std::atomic<long> statement_count = 0;
 void set_names(Message& message, const std::string& project, const std::string& id) {
   static const std::map<std::string, std::string> kCollections = {
       {"Lubricant", "lubricants"}, {"GearSet", "gearSets"},       {"Surface", "surfaces"},
-      {"Vehicle", "vehicles"},     {"Simulation", "simulations"}, {"Campaign", "campaigns"}};
+      {"Vehicle", "vehicles"},     {"Simulation", "simulations"}, {"Campaign", "campaigns"},
+      {"Candidate", "campaigns"}};
   std::string collection = "simulations";
   for (const auto& [kind, name] : kCollections) {
     if (message.GetDescriptor()->name().find(kind) != std::string::npos) collection = name;

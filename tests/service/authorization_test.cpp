@@ -80,7 +80,8 @@ TEST_F(Authorization, WhatOnlyReadsNeedsTheScopeReadAndWhatErasesTheScopeAdmin) 
     const std::string& name = row.descriptor->name();
     const auto begins = [&name](const char* word) { return name.starts_with(word); };
     const bool reads = begins("Get") || begins("List") || begins("Watch") || begins("Read") ||
-                       begins("Evaluate") || begins("Compare") || begins("Explain");
+                       begins("Evaluate") || begins("Compare") || begins("Explain") ||
+                       begins("Rank") || begins("Find") || begins("Estimate");
     const Scope scope = reads ? Scope::kRead : begins("Purge") ? Scope::kAdmin : Scope::kWrite;
     EXPECT_EQ(row.scope, scope) << name;
   }

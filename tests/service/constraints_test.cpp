@@ -100,7 +100,7 @@ struct Subject {
   v1::ComparePointsRequest comparison;
   v1::ExplainPointsRequest explanation;
   v1::Campaign campaign;
-  std::unique_ptr<Message> batch;
+  std::unique_ptr<Message> batch, decision;
   Message* message = nullptr;
   std::string path;
 
@@ -209,14 +209,24 @@ struct Subject {
     } else if (name == "LoadShareAtTorque") {
       use(gear_set.mutable_load_share_by_torque(0), "load_share_by_torque[0].");
     } else if (name.starts_with("Batch")) {
-      const auto* type = google::protobuf::DescriptorPool::generated_pool()->FindMessageTypeByName(
-          "tribodyn.v1." + std::string(name));
-      batch.reset(google::protobuf::MessageFactory::generated_factory()->GetPrototype(type)->New());
+      batch = new_message(name);
       use(batch.get(), "");
+    } else if (name.find("Candidate") != std::string_view::npos) {
+      decision = new_message(name);
+      decision->GetReflection()->AddDouble(
+          decision.get(), decision->GetDescriptor()->FindFieldByName("condition_weights"), 1);
+      use(decision.get(), "");
     } else if (name == "LoadShareAtTorque.Slot") {
       use(gear_set.mutable_load_share_by_torque(0)->mutable_slots(0),
           "load_share_by_torque[0].slots[0].");
     }
+  }
+
+  static std::unique_ptr<Message> new_message(std::string_view name) {
+    const auto* type = google::protobuf::DescriptorPool::generated_pool()->FindMessageTypeByName(
+        "tribodyn.v1." + std::string(name));
+    return std::unique_ptr<Message>(
+        google::protobuf::MessageFactory::generated_factory()->GetPrototype(type)->New());
   }
 
   void use(Message* inside, const std::string& prefix) {
@@ -255,6 +265,10 @@ struct Subject {
     }
     if (message == &profiles) {
       import_surface(profiles, "surfaces/x", seed_lookup(), violations);
+      return violations;
+    }
+    if (decision) {
+      check_message(*decision, "", violations);
       return violations;
     }
     if (batch) {

@@ -522,6 +522,19 @@ void RestAndGrpc::check_campaigns() {
   check("ReadCampaign",
         "name: 'campaigns/1' start_row: 1 row_count: 2 columns: 'mesh_loss_power_watts'");
   check("ReadCampaign", "name: 'campaigns/1' columns: 'mesh_loss'", Code::INVALID_ARGUMENT);
+  check("RankCandidates", R"(name: "campaigns/1" objective { wants_most: true } uncertainties {
+      parameter: "surface.asperity_friction_coefficient" relative_uncertainty: 0.1 })");
+  check("RankCandidates", "name: 'campaigns/1' count: -1", Code::INVALID_ARGUMENT);
+  check("FindParetoCandidates",
+        "name: 'campaigns/1' second { figure { column: 'mesh_loss_power_watts' } }");
+  check("FindParetoCandidates", "name: 'campaigns/1'", Code::INVALID_ARGUMENT);
+  check("EstimateCandidateEffects", "name: 'campaigns/1'", Code::INVALID_ARGUMENT);
+  check("EstimateCandidateEffects", "name: 'campaigns/9'", Code::NOT_FOUND);
+  check("PromoteCandidate",
+        "name: 'campaigns/1' candidate: 1 lubricant_id: 'promoted' surface_id: 'promoted'");
+  check("PromoteCandidate",
+        "name: 'campaigns/1' candidate: 1 lubricant_id: 'promoted' surface_id: 'promoted'",
+        Code::ALREADY_EXISTS);
   check("DeleteCampaign", "name: 'campaigns/1'");
   check("DeleteCampaign", "name: 'campaigns/1'", Code::NOT_FOUND);
 }

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/decisions/design.h"
+#include "core/decisions/factor_effects.h"
 #include "core/decisions/main_effects.h"
 #include "core/decisions/pareto_front.h"
 #include "core/decisions/ranking.h"
@@ -240,6 +241,51 @@ TEST(MainEffects, DoNotDependOnTheUnitOfAColumn) {
   const auto other = main_effects(scaled, response, 0.95);
   EXPECT_NEAR(1e-9 * other->effects[0]->effect, plain->effects[0]->effect, 1e-12);
   EXPECT_NEAR(1e-9 * other->effects[0]->low, plain->effects[0]->low, 1e-12);
+}
+
+TEST(FactorEffects, OfWordsAreDifferencesFromTheMostFrequentOne) {
+  const std::vector<std::string> words = {"b", "a", "a", "c", "a", "b", "c", "a"};
+  const std::vector<double> numbers = {1, 3, 2, 5, 4, 1.5, 2.5, 3};
+  std::vector<double> response;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    response.push_back(7 + 0.5 * numbers[i] + (words[i] == "b" ? 4 : words[i] == "c" ? -1 : 0));
+  }
+  const auto found = factor_effects({{{}, words}, {numbers, {}}}, response, 0.95);
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->effects.size(), 3U);
+  EXPECT_EQ(found->effects[0].factor, 0U);
+  EXPECT_EQ(found->effects[0].from, 1U);  // "a"
+  EXPECT_EQ(found->effects[0].to, 0U);    // "b"
+  EXPECT_NEAR(found->effects[0].effect, 4, 1e-12);
+  EXPECT_EQ(found->effects[1].factor, 1U);
+  EXPECT_EQ(found->effects[1].from, 0U);
+  EXPECT_EQ(found->effects[1].to, 3U);
+  EXPECT_NEAR(found->effects[1].effect, 0.5 * (5 - 1), 1e-12);
+  EXPECT_NEAR(found->effects[2].effect, -1, 1e-12);
+  EXPECT_EQ(found->degrees_of_freedom, 4);
+  EXPECT_TRUE(found->left_out.empty());
+}
+
+TEST(FactorEffects, LeaveOutFactorsWithTheReason) {
+  std::vector<double> response, numbers, doubled;
+  std::vector<std::string> same, different;
+  for (int i = 0; i < 20; ++i) {
+    response.push_back(std::sin(i));
+    numbers.push_back(i);
+    doubled.push_back(2.0 * i + 1);
+    same.emplace_back("x");
+    different.push_back(std::to_string(i % 13));
+  }
+  const auto found =
+      factor_effects({{{}, same}, {numbers, {}}, {{}, different}, {doubled, {}}}, response, 0.95);
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->effects.size(), 1U);
+  EXPECT_EQ(found->effects[0].factor, 1U);
+  using Reason = std::pair<std::size_t, NoEffect>;
+  EXPECT_EQ(found->left_out, (std::vector<Reason>{{0, NoEffect::kConstant},
+                                                  {2, NoEffect::kTooManyWords},
+                                                  {3, NoEffect::kFollowsFromOthers}}));
+  EXPECT_FALSE(factor_effects({{{1, 2}, {}}}, {1, 2}, 0.95)) << "no degree of freedom";
 }
 
 }  // namespace

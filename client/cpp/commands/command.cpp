@@ -96,6 +96,7 @@ std::vector<Command> all_commands() {
   commands.push_back(jobs_pin_command());
   commands.push_back(jobs_unpin_command());
   for (Command& command : campaign_commands()) commands.push_back(std::move(command));
+  for (Command& command : campaign_decision_commands()) commands.push_back(std::move(command));
   commands.push_back(help_command());
   commands.push_back(completion_command());
   return commands;

@@ -85,6 +85,7 @@ Command completion_command();
 Command help_command();
 /// Returns list, show, pause, resume, cancel, delete and columns of campaigns.
 std::vector<Command> campaign_commands();
+std::vector<Command> campaign_decision_commands();
 Command jobs_list_command();
 Command jobs_get_command();
 Command jobs_watch_command();

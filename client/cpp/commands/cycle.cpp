@@ -11,7 +11,6 @@
 #include "client/cpp/commands/scenario.h"
 #include "client/cpp/report/cycle_report.h"
 #include "client/cpp/resources/json_input.h"
-#include "client/cpp/service/point_batches.h"
 #include "client/cpp/text/csv.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"

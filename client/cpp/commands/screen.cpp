@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "client/cpp/commands/candidate_flags.h"
 #include "client/cpp/commands/resource_writes.h"
 #include "client/cpp/commands/result_files.h"
 #include "client/cpp/commands/scenario.h"
@@ -18,9 +19,7 @@
 #include "client/cpp/resources/json_input.h"
 #include "client/cpp/resources/table_files.h"
 #include "client/cpp/service/campaign_run.h"
-#include "client/cpp/service/candidate_errors.h"
 #include "client/cpp/service/follow.h"
-#include "client/cpp/service/point_batches.h"
 #include "client/cpp/service/screening_campaign.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
@@ -29,7 +28,7 @@ namespace tribodyn::client {
 namespace {
 
 /// Candidates that are compared with the best one, from the best on: at least and at most. It takes
-/// two points for each input and condition.
+/// two points for each input and condition, and the server compares as many as 20,000 points allow.
 constexpr int kLeastCompared = 30, kMostCompared = 200;
 
 constexpr int kMostPointsOfACampaign = 20'000'000;  // that the server takes
@@ -45,47 +44,13 @@ struct ScreenFlags {
   std::vector<std::string> carried;
   int top = 20;
   std::string csv_path, json_lines_path, plot_path;
-  std::vector<StatedUncertainty> uncertainties;
+  std::vector<v1::ParameterUncertainty> uncertainties;
   double confidence = 0.95;
   bool leaves_out_uncertainty = false;
   std::string pareto_column;
   bool wants_most = false;
   bool wants_effects = false;
 };
-
-/// Reads "PARAMETER=VALUE", e.g. "pressure-viscosity=0.5/GPa" or "relaxation-time=10%".
-void read_uncertainty_flag(const std::string& text, std::vector<StatedUncertainty>& out,
-                           Complaints& complaints) {
-  const std::string start = "--uncertainty: '" + printable(text) + "' ";
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos) {
-    complaints.push_back(start + "is not PARAMETER=VALUE");
-    return;
-  }
-  const std::string word = text.substr(0, equals);
-  std::string value = text.substr(equals + 1), wrong;
-  const google::protobuf::FieldDescriptor* field =
-      find_parameter(kind_of(*v1::Surface::descriptor()), word, wrong);
-  if (field == nullptr) {
-    field = find_parameter(kind_of(*v1::Lubricant::descriptor()), word, wrong);
-  }
-  if (field == nullptr) {
-    complaints.push_back(start + wrong);
-    return;
-  }
-  const bool is_relative = value.ends_with("%");
-  if (is_relative) value.pop_back();
-  const std::string unit = is_relative ? "" : unit_of_field(field->name());
-  const std::string trade = trade_unit_of_field(field->name());
-  // The uncertainty of a temperature is a difference.
-  const std::string bare = unit.empty() ? "" : trade == "C" ? "K" : trade;
-  const auto read = read_quantity(value, unit, bare, false, wrong);
-  if (!read || !(*read > 0)) {
-    complaints.push_back(start + (read ? "must be above 0" : wrong));
-    return;
-  }
-  out.push_back({field, is_relative ? *read / 100 : *read, is_relative});
-}
 
 v1::CampaignBudget& budget_of(ScreenFlags& flags) {
   if (!flags.budget) flags.budget.emplace();
@@ -152,18 +117,7 @@ void add_screen_flags(FlagList& list, ScreenFlags& flags) {
             })
       .collection = "vehicles";
   list.group("Decisions");
-  Flag& uncertainty = list.raw("--uncertainty", "PARAMETER=VALUE",
-                               "Standard uncertainty of a parameter, e.g. "
-                               "pressure-viscosity=0.5/GPa or relaxation-time=10%; "
-                               "repeatable. Of a parameter in the table it is each candidate's "
-                               "own, of another one common to "
-                               "all, as are those that the base states.");
-  uncertainty.is_repeatable = true;
-  uncertainty.read = [&flags](const std::vector<std::string>& texts, Complaints& complaints) {
-    for (const std::string& text : texts) {
-      read_uncertainty_flag(text, flags.uncertainties, complaints);
-    }
-  };
+  add_uncertainty_flag(list, flags.uncertainties);
   list.number("--confidence", {"-", "0.5 to 0.9999", "0.95"},
               "Probability from which on two candidates can be told apart; others are ties",
               [&flags](double value) { flags.confidence = value; });
@@ -460,26 +414,25 @@ void write_point_files(const ScreenFlags& flags, const Screening& screening) {
   }
 }
 
-/// Returns how sure the ranking is. Where all compared candidates are ties, more are compared.
+/// Returns how sure the ranking is, by the service. Where all compared candidates are ties, more
+/// are compared.
 RankingConfidence confidence_of(const ScreenFlags& flags, const Screening& screening,
                                 const std::vector<CandidateFigures>& ranking,
-                                const v1::Schema& schema, Connection& connection) {
+                                Connection& connection) {
+  if (screening.campaign.empty() || !ranking.front().refusal.empty()) return {};
+  v1::RankCandidatesRequest request;
+  request.set_name(screening.campaign);
+  *request.mutable_condition_weights() = {screening.weights.begin(), screening.weights.end()};
+  request.set_confidence(flags.confidence);
+  *request.mutable_uncertainties() = {flags.uncertainties.begin(), flags.uncertainties.end()};
+  const std::vector<std::size_t> candidates = accepted_candidates(screening.table);
   RankingConfidence out;
-  const std::vector<UncertainInput> inputs = uncertain_inputs(screening, flags.uncertainties);
-  out.has_no_inputs = inputs.empty();
-  std::vector<std::size_t> candidates;
-  for (const CandidateFigures& each : ranking) {
-    if (each.refusal.empty()) candidates.push_back(each.candidate);
-  }
-  if (inputs.empty() || candidates.empty()) return out;
-  for (const int most : {std::clamp(flags.top, kLeastCompared, kMostCompared), kMostCompared}) {
-    const std::size_t count = std::min(candidates.size(), static_cast<std::size_t>(most));
-    const std::vector<std::size_t> compared(
-        candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(count));
-    out = ranking_confidence(ranking, inputs,
-                             input_effects(connection, screening, schema, inputs, compared),
-                             flags.confidence);
-    if (count == candidates.size() || !out.of.back() || !out.of.back()->is_tied) break;
+  for (const int count : {std::clamp(flags.top, kLeastCompared, kMostCompared), kMostCompared}) {
+    request.set_count(count);
+    const v1::RankCandidatesResponse answer = connection.rank_candidates(request);
+    out = ranking_confidence(ranking, candidates, answer, flags.confidence);
+    const bool has_all = answer.compared() < count || answer.ranked() <= count;
+    if (out.of.empty() || has_all || !out.of.back() || !out.of.back()->is_tied) break;
   }
   return out;
 }
@@ -522,9 +475,9 @@ int run_screen(ScreenFlags& flags, const CommonOptions& options) {
   const bool is_complete = compute(flags, schema, connection, options, screening);
   write_point_files(flags, screening);
   const std::vector<CandidateFigures> ranking = ranked(screening);
-  const RankingConfidence confidence =
-      flags.leaves_out_uncertainty ? RankingConfidence()
-                                   : confidence_of(flags, screening, ranking, schema, connection);
+  const RankingConfidence confidence = flags.leaves_out_uncertainty
+                                           ? RankingConfidence()
+                                           : confidence_of(flags, screening, ranking, connection);
   const auto [front, effects] = decisions_of(flags, screening, ranking);
   std::map<std::string, std::string> members;
   if (front) members["pareto_front"] = front_json(screening, *front);

@@ -129,4 +129,27 @@ void Connection::stream_campaign(const std::string& name, const CampaignRowsOpti
                                            on_schema, on_rows);
 }
 
+v1::RankCandidatesResponse Connection::rank_candidates(const v1::RankCandidatesRequest& request) {
+  return services_->call(*services_->campaigns, &v1::CampaignService::Stub::RankCandidates,
+                         request);
+}
+
+v1::FindParetoCandidatesResponse Connection::find_pareto_candidates(
+    const v1::FindParetoCandidatesRequest& request) {
+  return services_->call(*services_->campaigns, &v1::CampaignService::Stub::FindParetoCandidates,
+                         request);
+}
+
+v1::EstimateCandidateEffectsResponse Connection::estimate_candidate_effects(
+    const v1::EstimateCandidateEffectsRequest& request) {
+  return services_->call(*services_->campaigns,
+                         &v1::CampaignService::Stub::EstimateCandidateEffects, request);
+}
+
+v1::PromoteCandidateResponse Connection::promote_candidate(
+    const v1::PromoteCandidateRequest& request) {
+  return services_->call(*services_->campaigns, &v1::CampaignService::Stub::PromoteCandidate,
+                         request);
+}
+
 }  // namespace tribodyn::client

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <set>
 
 #include "client/cpp/failure.h"
@@ -12,16 +11,13 @@
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
-#include "core/decisions/main_effects.h"
+#include "core/decisions/factor_effects.h"
 #include "core/decisions/pareto_front.h"
-#include "core/decisions/ranking.h"
 
 namespace tribodyn::client {
 namespace {
 
 constexpr double kEffectCoverage = 0.95;
-/// Most words of a column of which the effects are computed.
-constexpr std::size_t kMostLevels = 12;
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 double number_or_nan(const std::string& text) {
@@ -42,55 +38,17 @@ std::vector<double> numbers_of_column(const CandidateTable& table, std::size_t c
   return out;
 }
 
-/// The columns of the linear model, and what each of them stands for.
-struct EffectModel {
-  std::vector<ScreeningEffect> labels;
-  std::vector<std::vector<double>> columns;  // by candidate of the model
-  std::vector<std::string> left_out;
+/// The factors of the linear model, and the columns that they are.
+struct EffectFactors {
+  std::vector<std::size_t> columns;
+  std::vector<Factor> factors;
 };
 
-void add_numbers(const CandidateTable& table, std::size_t column,
-                 const std::vector<std::size_t>& candidates, const std::vector<double>& numbers,
-                 EffectModel& model) {
-  const auto less = [&](std::size_t a, std::size_t b) { return numbers[a] < numbers[b]; };
-  const auto [low, high] = std::minmax_element(candidates.begin(), candidates.end(), less);
-  const double range = numbers[*high] - numbers[*low];
-  const auto typed = [&](std::size_t candidate) {
-    const std::string& cell = table.cells[candidate][column];
-    return cell.empty() ? "base" : cell;
-  };
-  model.labels.push_back({table.headers[column], typed(*low), typed(*high), 0, 0, 0});
-  std::vector<double>& shares = model.columns.emplace_back();
-  for (const std::size_t each : candidates) {
-    shares.push_back((numbers[each] - numbers[*low]) / range);
-  }
-}
-
-void add_words(const CandidateTable& table, std::size_t column,
-               const std::vector<std::size_t>& candidates, EffectModel& model) {
-  std::map<std::string, std::size_t> counts;
-  for (const std::size_t each : candidates) ++counts[table.cells[each][column]];
-  if (counts.size() > kMostLevels) {
-    model.left_out.push_back(table.headers[column] + " (" + std::to_string(counts.size()) +
-                             " different texts)");
-    return;
-  }
-  const auto usual =
-      std::max_element(counts.begin(), counts.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  const auto shown = [](const std::string& cell) { return cell.empty() ? "(empty)" : cell; };
-  for (const auto& [word, count] : counts) {
-    if (word == usual->first) continue;
-    model.labels.push_back({table.headers[column], shown(usual->first), shown(word), 0, 0, 0});
-    std::vector<double>& has_word = model.columns.emplace_back();
-    for (const std::size_t each : candidates) {
-      has_word.push_back(table.cells[each][column] == word ? 1 : 0);
-    }
-  }
-}
-
-EffectModel effect_model(const CandidateTable& table, const std::vector<std::size_t>& candidates) {
-  EffectModel out;
+/// Returns a factor for each column but those of uncertainties: of numbers if all candidates have
+/// one.
+EffectFactors effect_factors(const CandidateTable& table,
+                             const std::vector<std::size_t>& candidates) {
+  EffectFactors out;
   for (std::size_t k = 0; k < table.headers.size(); ++k) {
     const bool is_uncertainty = std::any_of(table.uncertainties.begin(), table.uncertainties.end(),
                                             [k](const auto& each) { return each.column == k; });
@@ -99,19 +57,37 @@ EffectModel effect_model(const CandidateTable& table, const std::vector<std::siz
     const bool all_are_numbers = std::all_of(candidates.begin(), candidates.end(), [&](auto each) {
       return std::isfinite(numbers[each]);
     });
-    const bool differs = std::any_of(candidates.begin(), candidates.end(), [&](auto each) {
-      return all_are_numbers ? numbers[each] != numbers[candidates.front()]
-                             : table.cells[each][k] != table.cells[candidates.front()][k];
-    });
-    if (!differs) {
-      out.left_out.push_back(table.headers[k] + " (the same for all)");
-    } else if (all_are_numbers) {
-      add_numbers(table, k, candidates, numbers, out);
-    } else {
-      add_words(table, k, candidates, out);
+    out.columns.push_back(k);
+    Factor& factor = out.factors.emplace_back();
+    for (const std::size_t each : candidates) {
+      if (all_are_numbers) {
+        factor.numbers.push_back(numbers[each]);
+      } else {
+        factor.words.push_back(table.cells[each][k]);
+      }
     }
   }
   return out;
+}
+
+/// Returns a column without an effect, and why it has none.
+std::string left_out_text(const std::string& header, const Factor& factor, NoEffect reason) {
+  switch (reason) {
+    case NoEffect::kConstant:
+      return header + " (the same for all)";
+    case NoEffect::kTooManyWords:
+      return header + " (" +
+             std::to_string(std::set(factor.words.begin(), factor.words.end()).size()) +
+             " different texts)";
+    case NoEffect::kFollowsFromOthers:
+      break;
+  }
+  return header + " (follows from the columns before it)";
+}
+
+/// Returns what people call a parameter, "lubricant.relaxation_time_seconds" for one.
+std::string parameter_label(const std::string& path) {
+  return label_of_field(path.substr(path.find('.') + 1));
 }
 
 int effect_places(double error) {
@@ -146,46 +122,29 @@ std::vector<double> front_values(const Screening& screening,
 }  // namespace
 
 RankingConfidence ranking_confidence(const std::vector<CandidateFigures>& ranking,
-                                     const std::vector<UncertainInput>& inputs,
-                                     const std::vector<std::vector<double>>& effects,
-                                     double confidence) {
+                                     const std::vector<std::size_t>& candidates,
+                                     const v1::RankCandidatesResponse& answer, double confidence) {
   RankingConfidence out;
   out.confidence = confidence;
-  for (const UncertainInput& input : inputs) {
-    (input.is_shared ? out.shared : out.own).push_back(label_of_field(input.field->name()));
+  for (const std::string& path : answer.own_uncertain_parameters()) {
+    out.own.push_back(parameter_label(path));
   }
-  out.of.resize(effects.size());
-  std::vector<std::size_t> positions;  // in the ranking, of candidates with all effects
-  for (std::size_t i = 0; i < effects.size(); ++i) {
-    const bool is_whole = std::all_of(effects[i].begin(), effects[i].end(),
-                                      [](double each) { return std::isfinite(each); });
-    if (is_whole) positions.push_back(i);
+  for (const std::string& path : answer.shared_uncertain_parameters()) {
+    out.shared.push_back(parameter_label(path));
   }
-  // Without the best one there is nothing to compare with.
-  if (positions.empty() || positions.front() != 0) return out;
-  const auto rows = static_cast<Eigen::Index>(positions.size());
-  UncertainCandidates candidates{
-      Eigen::VectorXd(rows), Eigen::VectorXd(rows),
-      Eigen::MatrixXd(rows, static_cast<Eigen::Index>(out.own.size())),
-      Eigen::MatrixXd(rows, static_cast<Eigen::Index>(out.shared.size()))};
-  for (Eigen::Index row = 0; row < rows; ++row) {
-    const std::size_t position = positions[static_cast<std::size_t>(row)];
-    candidates.values(row) = ranking[position].inefficiency;
-    candidates.solver_errors(row) = ranking[position].solver_error;
-    Eigen::Index own = 0, shared = 0;
-    for (std::size_t k = 0; k < inputs.size(); ++k) {
-      if (inputs[k].is_shared) {
-        candidates.shared_effects(row, shared++) = effects[position][k];
-      } else {
-        candidates.own_effects(row, own++) = effects[position][k];
-      }
-    }
-  }
-  for (const RankedCandidate& each : ranked_candidates(candidates, confidence)) {
-    const double uncertainty = std::sqrt(candidates.own_effects.row(each.index).squaredNorm() +
-                                         candidates.shared_effects.row(each.index).squaredNorm());
-    out.of[positions[static_cast<std::size_t>(each.index)]] = {
-        uncertainty, each.to_best.higher_probability, each.is_tied};
+  out.has_no_inputs = out.own.empty() && out.shared.empty();
+  if (out.has_no_inputs) return out;
+  out.of.resize(std::min(ranking.size(), static_cast<std::size_t>(answer.compared())));
+  for (const v1::RankedCandidate& each : answer.candidates()) {
+    const std::size_t candidate = candidates.at(static_cast<std::size_t>(each.candidate()));
+    const auto at = std::find_if(ranking.begin(), ranking.end(), [candidate](const auto& ranked) {
+      return ranked.candidate == candidate;
+    });
+    const auto position = static_cast<std::size_t>(at - ranking.begin());
+    if (position >= out.of.size() || !each.has_comparison()) continue;
+    const v1::CandidateComparison& comparison = each.comparison();
+    out.of[position] = {comparison.standard_uncertainty(), comparison.worse_probability(),
+                        comparison.tied()};
   }
   return out;
 }
@@ -240,35 +199,29 @@ std::optional<ScreeningEffects> screening_effects(const Screening& screening,
     responses.push_back(each.inefficiency);
   }
   if (candidates.empty()) return std::nullopt;
-  EffectModel model = effect_model(screening.table, candidates);
-  const auto rows = static_cast<Eigen::Index>(candidates.size());
-  Eigen::MatrixXd columns(rows, static_cast<Eigen::Index>(model.columns.size()));
-  for (std::size_t k = 0; k < model.columns.size(); ++k) {
-    columns.col(static_cast<Eigen::Index>(k)) =
-        Eigen::Map<const Eigen::VectorXd>(model.columns[k].data(), rows);
-  }
-  const auto found = main_effects(
-      columns, Eigen::Map<const Eigen::VectorXd>(responses.data(), rows), kEffectCoverage);
+  const EffectFactors factors = effect_factors(screening.table, candidates);
+  const auto found = factor_effects(factors.factors, responses, kEffectCoverage);
   if (!found) return std::nullopt;
   ScreeningEffects out;
   out.degrees_of_freedom = found->degrees_of_freedom;
   out.residual_standard_deviation = found->residual_standard_deviation;
   out.explained_share = found->explained_share;
-  out.left_out = std::move(model.left_out);
-  for (std::size_t k = 0; k < model.labels.size(); ++k) {
-    const auto& effect = found->effects[k];
-    if (!effect) {
-      out.left_out.push_back(model.labels[k].column + " (follows from the columns before it)");
-      continue;
-    }
-    ScreeningEffect& each = out.effects.emplace_back(std::move(model.labels[k]));
-    each.effect = effect->effect;
-    each.low = effect->low;
-    each.high = effect->high;
+  const auto header = [&](std::size_t factor) {
+    return screening.table.headers[factors.columns[factor]];
+  };
+  for (const FactorEffect& each : found->effects) {
+    const auto typed = [&](std::size_t position) {
+      const std::string& cell =
+          screening.table.cells[candidates[position]][factors.columns[each.factor]];
+      if (!cell.empty()) return cell;
+      return std::string(factors.factors[each.factor].words.empty() ? "base" : "(empty)");
+    };
+    out.effects.push_back(
+        {header(each.factor), typed(each.from), typed(each.to), each.effect, each.low, each.high});
   }
-  std::stable_sort(out.effects.begin(), out.effects.end(), [](const auto& a, const auto& b) {
-    return std::abs(a.effect) > std::abs(b.effect);
-  });
+  for (const auto& [factor, reason] : found->left_out) {
+    out.left_out.push_back(left_out_text(header(factor), factors.factors[factor], reason));
+  }
   return out;
 }
 

@@ -6,16 +6,14 @@
 #include <vector>
 
 #include "client/cpp/report/screening_report.h"
-#include "client/cpp/service/candidate_errors.h"
 
 namespace tribodyn::client {
 
-/// Returns how sure the ranking is. `effects`: those of the first candidates of the ranking, by
-/// input_effects(); candidates with a NaN among them have no confidence.
+/// Returns how sure the ranking is. `answer`: the comparisons of its first candidates by the
+/// service; its numbers are positions in `candidates`, the indices of the candidates in the table.
 RankingConfidence ranking_confidence(const std::vector<CandidateFigures>& ranking,
-                                     const std::vector<UncertainInput>& inputs,
-                                     const std::vector<std::vector<double>>& effects,
-                                     double confidence);
+                                     const std::vector<std::size_t>& candidates,
+                                     const v1::RankCandidatesResponse& answer, double confidence);
 
 /// The front of least inefficiency and least or most of a column.
 struct ScreeningFront {

@@ -53,14 +53,6 @@ std::string cut(std::string text, std::size_t most) {
   return text;
 }
 
-std::vector<std::size_t> accepted_candidates(const CandidateTable& table) {
-  std::vector<std::size_t> out;
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    if (table.refusals[i].empty()) out.push_back(i);
-  }
-  return out;
-}
-
 std::set<std::string> names_of_other_columns(const v1::Campaign& campaign) {
   const std::vector<std::string> figures = screened_columns(true);
   std::set<std::string> out(figures.begin(), figures.end());
@@ -210,6 +202,14 @@ CandidateTable candidates_of(const v1::Campaign& campaign) {
 }
 
 }  // namespace
+
+std::vector<std::size_t> accepted_candidates(const CandidateTable& table) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (table.refusals[i].empty()) out.push_back(i);
+  }
+  return out;
+}
 
 v1::Campaign campaign_of(const Screening& screening, const std::string& title) {
   const v1::EvaluatePointsRequest& base = screening.request;

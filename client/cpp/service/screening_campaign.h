@@ -9,6 +9,9 @@
 
 namespace tribodyn::client {
 
+/// Returns the indices of the candidates without a refusal: those of the campaign, in its order.
+std::vector<std::size_t> accepted_candidates(const CandidateTable& table);
+
 /// Returns the campaign that computes the candidates without a refusal, in their order. It keeps
 /// the candidates' names, carried columns and uncertainties as attributes.
 v1::Campaign campaign_of(const Screening& screening, const std::string& title);

@@ -14,6 +14,7 @@ from test_connection import InThread, wait_until
 from tribodyn import aio
 
 FLUID = "paper-fluid-1"
+FIGURE = "inefficiency_energy_mean_percent"
 
 
 def variants(count):
@@ -198,3 +199,49 @@ print(json.dumps([type(table).__name__, list(table["additive"]), list(table["sta
         env={**os.environ, "TRIBODYN_SERVER": server.address},
     )
     assert json.loads(found.stdout) == ["Table", ["x", "y"], ["OK", "OK"], 2]
+
+
+def test_a_campaign_decides_between_its_candidates(client):
+    share = np.arange(8) / 8
+    table = {
+        "name": [f"v{i}" for i in range(8)],
+        "lubricant.alpha": [f"{15 + i}/GPa" for i in range(8)],
+        "surface.asperity_friction_coefficient": list(0.08 + 0.01 * (np.arange(8) % 3)),
+        "treat_rate": list(share),
+        "cost": list(4 - share),
+    }
+    campaign = client.screen(table, FLUID, speeds_kilometres_per_hour=[30], contact_figures=True)
+    campaign.wait()
+    exact = campaign.ranking(stated_uncertainties=False)
+    assert list(exact["candidate"][:1]) == [0] and not exact["tied"].iloc[1]
+    ranking = campaign.ranking(uncertainties={"lubricant.alpha": "5%"}, count=5)
+    assert len(ranking) == 5 and ranking.attrs["ranked"] == 8
+    assert ranking["tied"].iloc[1] and 0.5 < ranking["worse_probability"].iloc[1] < 0.95
+    assert ranking["standard_uncertainty"].iloc[0] > 0.03 * ranking.iloc[0][FIGURE]
+    assert "lubricant.pressure_viscosity_coefficient_per_pascal" in ranking.attrs[
+        "own_uncertain_parameters"
+    ]
+    cheap = campaign.ranking(where={"cost": (None, 3.5), "film_ratio_minimum:min": (0.0, None)})
+    assert cheap.attrs["excluded"] == 4 and (cheap["cost"] <= 3.5).all()
+    assert (cheap["film_ratio_minimum:min"] > 0).all()
+    front = campaign.pareto("cost")
+    assert front["candidate"].iloc[0] == 0 and (np.diff(front["cost"]) < 0).all()
+    assert len(front) + front.attrs["beaten"] == 8
+    effects = campaign.effects("cost", columns=["treat_rate"])
+    assert effects["effect"][0] == pytest.approx(-7 / 8) and effects["to"][0] == 7 / 8
+    assert campaign.effects().attrs["left_out"] == {
+        "treat_rate": "follows from others",
+        "cost": "follows from others",
+    }
+    made = campaign.promote(ranking["candidate"].iloc[0], "promoted", surface="promoted")
+    assert made.lubricant.display_name == "v0"
+    assert "candidate 0 (v0) of campaigns/" in str(made.lubricant.provenance)
+    alone = client.point("promoted", surface="promoted", speed_kilometres_per_hour=30)
+    assert alone[FIGURE].iloc[0] == pytest.approx(exact[FIGURE].iloc[0], rel=2e-3)
+    with pytest.raises(tribodyn.TribodynError) as caught:
+        campaign.promote(1, "promoted", surface="other")
+    assert caught.value.reason == "ALREADY_EXISTS"
+    with pytest.raises(tribodyn.TribodynError, match="did you mean"):
+        campaign.ranking("mesh_loss_power_watt")
+    with pytest.raises(tribodyn.TribodynError, match="is not COLUMN"):
+        campaign.ranking("mesh_loss_power_watts:median")

@@ -13,7 +13,6 @@
 
 #include "client/cpp/commands/help_topics.h"
 #include "client/cpp/resources/kind.h"
-#include "client/cpp/service/point_batches.h"
 #include "client/cpp/text/units.h"
 #include "tests/service/server_process.h"
 
@@ -427,41 +426,6 @@ TEST_F(Library, ACampaignIsPausedResumedAndCancelled) {
   EXPECT_EQ(connection.cancel_campaign(made.name()).state(), v1::Campaign::CANCELLED);
   EXPECT_TRUE(has_ended(connection.follow_campaign(made.name()).state()));
   connection.delete_campaign(made.name());
-}
-
-TEST_F(Library, CandidatesComeInOrderAndEndEarlyOnRequest) {
-  v1::EvaluatePointsRequest request;
-  request.set_lubricant("lubricants/paper-fluid-1");
-  for (int i = 0; i < 100; ++i) request.add_conditions()->set_speed_kilometres_per_hour(40 + i % 2);
-  CandidateParameter parameter{
-      v1::Lubricant::descriptor()->FindFieldByName("relaxation_time_seconds"), {}};
-  for (int i = 0; i < 18; ++i) parameter.values.push_back(1e-7 * (i + 1));
-  const std::vector<std::size_t> candidates = {17, 16, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
-  std::vector<double> figures;
-  std::size_t next = 0;
-  const auto collect = [&](const PointBatch& batch) {
-    EXPECT_EQ(batch.first, next);
-    next += batch.count;
-    const auto& column = batch.answer.inefficiency_energy_mean_percent();
-    figures.insert(figures.end(), column.begin(), column.end());
-  };
-  evaluate_candidates(connection, request, {parameter}, candidates, collect, [] { return true; });
-  ASSERT_EQ(figures.size(), 1300U);
-  v1::CandidateColumn& column = *request.add_candidate_columns();
-  column.set_path(parameter.path());
-  for (const std::size_t i : candidates) column.add_values(parameter.values[i]);
-  const v1::EvaluatePointsResponse whole = connection.evaluate_points(request);
-  EXPECT_EQ(figures, std::vector<double>(whole.inefficiency_energy_mean_percent().begin(),
-                                         whole.inefficiency_energy_mean_percent().end()));
-  request.clear_candidate_columns();
-  next = 0;
-  evaluate_candidates(connection, request, {parameter}, candidates, collect,
-                      [&] { return next == 0; });
-  EXPECT_EQ(next, 5U);
-  parameter.values.assign(18, -1);
-  EXPECT_THROW(evaluate_candidates(connection, request, {parameter}, candidates, collect,
-                                   [] { return true; }),
-               ServiceError);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ from typing import Any, AsyncGenerator, Mapping, Sequence
 import numpy as np
 
 from tribodyn._columns import read_columns
-from tribodyn._evaluate import CONDITION, Extras, read_varied
+from tribodyn._evaluate import CONDITION, Extras, parameter_path, read_varied
 from tribodyn._frames import Frame, enum_word, frame
 from tribodyn._progress import Progress
 from tribodyn._studies import Arguments, full_name, set_switches
@@ -28,6 +28,7 @@ _FOLLOW_RETRIES = 20  # about 40 s in all: long enough for a server that drains 
 _NOT_COMPUTED = -1  # in refusal_number
 _DEFAULTS = {"sump_temperature_celsius": 40.0, "inlet_temperature_rise_kelvin": 20.0}
 _STATUS = ("status", "status_message")
+_FIGURE = "inefficiency_energy_mean_percent"
 _COLLECTIONS = {
     "lubricant": "lubricants",
     "gear_set": "gearSets",
@@ -81,11 +82,10 @@ class AsyncCampaign:
     async def frame(
         self, columns: Sequence[str] = (), *, start_row: int = 0, row_count: int = 0
     ) -> Frame:
-        if self._details is None:
-            self._details = await self._get(pb.CAMPAIGN_VIEW_FULL)
-        own = _OwnColumns(self._details)
+        details = await self._full()
+        own = _OwnColumns(details)
         names = [columns] if isinstance(columns, str) else list(columns)
-        figures = Extras.of(self._details).columns()
+        figures = Extras.of(details).columns()
         names = names or [*own.names(), *figures, *_STATUS]
         arguments = Arguments()
         known = {*own.names(), *figures, *_STATUS, "candidate", "condition"}
@@ -110,25 +110,163 @@ class AsyncCampaign:
         out = {name: cells[name] if name in cells else own.column(name, rows) for name in names}
         return frame(out, {**self._attrs(), "start_row": schema.start_row})
 
-    async def ranking(self) -> Frame:
-        figures = ["inefficiency_energy_mean_percent", "mesh_loss_power_watts"]
-        points = await self.frame([*figures, *_STATUS])
-        assert self._details is not None
-        own = _OwnColumns(self._details)
-        shape = (self.message.candidates, len(self._details.conditions))
-        weights = np.array(self._details.condition_weights or [1.0] * shape[1])
-        weights /= weights.sum()
-        candidates = np.arange(shape[0]) * shape[1]
-        first_bad = (np.asarray(points["status"]).reshape(shape) != "OK").argmax(axis=1)
-        out = {name: own.column(name, candidates) for name in own.of_candidates()}
-        out["candidate"] = np.arange(shape[0])
-        for name in figures:
-            out[name] = np.asarray(points[name]).reshape(shape) @ weights
-        for name in _STATUS:
-            out[name] = np.asarray(points[name])[candidates + first_bad]
-        # NaN last, and equal ones in the order of the table.
-        order = np.argsort(out[figures[0]], kind="stable")
-        return frame({name: each[order] for name, each in out.items()}, self._attrs())
+    async def ranking(
+        self,
+        by: str = _FIGURE,
+        *,
+        most: bool = False,
+        where: Mapping[str, tuple[float | None, float | None]] | None = None,
+        condition_weights: Sequence[float] = (),
+        uncertainties: Mapping[str, Quantity] | None = None,
+        stated_uncertainties: bool = True,
+        confidence: float = 0.95,
+        count: int = 1000,
+    ) -> Frame:
+        arguments = Arguments()
+        request = pb.RankCandidatesRequest(
+            name=self.name,
+            objective=_objective(arguments, "by", by, most),
+            constraints=_constraints(arguments, where),
+            condition_weights=condition_weights,
+            confidence=confidence,
+            count=count,
+            ignore_stated_uncertainties=not stated_uncertainties,
+        )
+        for name, value in (uncertainties or {}).items():
+            _add_uncertainty(arguments, name, value, request)
+        arguments.check()
+        answer = await self._decide("RankCandidates", request)
+        found = answer.candidates
+        cells: dict[str, Any] = {by: [each.value for each in found]}
+        cells["solver_error"] = [
+            each.solver_error if each.HasField("solver_error") else np.nan for each in found
+        ]
+        for i, constraint in enumerate(where or {}):
+            cells.setdefault(constraint, [each.constraint_values[i] for each in found])
+        compared = [each.comparison if each.HasField("comparison") else None for each in found]
+        for name in ("standard_uncertainty", "worse_probability"):
+            cells[name] = [getattr(each, name) if each else np.nan for each in compared]
+        cells["tied"] = np.array([each.tied if each else None for each in compared], dtype=object)
+        attrs = {
+            **_counts(answer),
+            "ranked": answer.ranked,
+            "compared": answer.compared,
+            "own_uncertain_parameters": list(answer.own_uncertain_parameters),
+            "shared_uncertain_parameters": list(answer.shared_uncertain_parameters),
+        }
+        return await self._of_candidates([each.candidate for each in found], cells, attrs)
+
+    async def pareto(
+        self,
+        second: str,
+        *,
+        second_most: bool = False,
+        first: str = _FIGURE,
+        first_most: bool = False,
+        where: Mapping[str, tuple[float | None, float | None]] | None = None,
+        condition_weights: Sequence[float] = (),
+    ) -> Frame:
+        arguments = Arguments()
+        request = pb.FindParetoCandidatesRequest(
+            name=self.name,
+            first=_objective(arguments, "first", first, first_most),
+            second=_objective(arguments, "second", second, second_most),
+            constraints=_constraints(arguments, where),
+            condition_weights=condition_weights,
+        )
+        arguments.check()
+        answer = await self._decide("FindParetoCandidates", request)
+        cells = {
+            first: [each.first_value for each in answer.candidates],
+            second: [each.second_value for each in answer.candidates],
+        }
+        attrs = {**_counts(answer), "beaten": answer.beaten, "total_size": answer.total_size}
+        return await self._of_candidates(
+            [each.candidate for each in answer.candidates], cells, attrs
+        )
+
+    async def effects(
+        self,
+        figure: str = _FIGURE,
+        *,
+        columns: Sequence[str] = (),
+        where: Mapping[str, tuple[float | None, float | None]] | None = None,
+        condition_weights: Sequence[float] = (),
+        coverage: float = 0.95,
+    ) -> Frame:
+        arguments = Arguments()
+        request = pb.EstimateCandidateEffectsRequest(
+            name=self.name,
+            figure=_figure(arguments, "figure", figure),
+            columns=[columns] if isinstance(columns, str) else columns,
+            constraints=_constraints(arguments, where),
+            condition_weights=condition_weights,
+            coverage=coverage,
+        )
+        arguments.check()
+        answer = await self._decide("EstimateCandidateEffects", request)
+        own = _OwnColumns(await self._full())
+        found = answer.effects
+        cells: dict[str, Any] = {"column": [each.column for each in found]}
+        cells["from"] = np.array(
+            [own.of_candidate(each.column, each.from_candidate) for each in found], dtype=object
+        )
+        cells["to"] = np.array(
+            [own.of_candidate(each.column, each.to_candidate) for each in found], dtype=object
+        )
+        for name in ("effect", "effect_minimum", "effect_maximum"):
+            cells[name] = [getattr(each, name) for each in found]
+        reasons = pb.ColumnWithoutEffect.Reason
+        attrs = {
+            **_counts(answer),
+            "left_out": {
+                each.column: reasons.Name(each.reason).lower().replace("_", " ")
+                for each in answer.left_out
+            },
+            "candidates": answer.candidates,
+            "degrees_of_freedom": answer.degrees_of_freedom,
+            "residual_standard_deviation": answer.residual_standard_deviation_value,
+            "explained_share": answer.explained_share,
+        }
+        return frame(cells, {**self._attrs(), **attrs})
+
+    async def promote(
+        self,
+        candidate: int,
+        lubricant: str = "",
+        *,
+        surface: str = "",
+        display_name: str = "",
+        validate_only: bool = False,
+    ) -> pb.PromoteCandidateResponse:
+        request = pb.PromoteCandidateRequest(
+            name=self.name,
+            candidate=int(candidate),
+            lubricant_id=lubricant,
+            surface_id=surface,
+            display_name=display_name,
+            validate_only=validate_only,
+        )
+        return await self._transport.call(_SERVICE, "PromoteCandidate", request)
+
+    async def _decide(self, method: str, request: Any) -> Any:
+        return await self._transport.call(_SERVICE, method, request, patient=True)
+
+    async def _full(self) -> pb.Campaign:
+        if self._details is None:
+            self._details = await self._get(pb.CAMPAIGN_VIEW_FULL)
+        return self._details
+
+    async def _of_candidates(
+        self, candidates: Sequence[int], cells: Mapping[str, Any], attrs: Mapping[str, Any]
+    ) -> Frame:
+        """Returns a table of candidates: what they were created with, their numbers and `cells`."""
+        details = await self._full()
+        own = _OwnColumns(details)
+        rows = np.array(candidates, dtype=int) * len(details.conditions)
+        out = {name: own.column(name, rows) for name in own.of_candidates()}
+        out["candidate"] = np.array(candidates, dtype=int)
+        return frame({**out, **cells}, {**self._attrs(), **attrs})
 
     async def pause(self) -> None:
         await self._change("PauseCampaign", pb.PauseCampaignRequest(name=self.name))
@@ -229,6 +367,10 @@ class _OwnColumns:
     def names(self) -> list[str]:
         return [*self._of_candidates, *CONDITION]
 
+    def of_candidate(self, name: str, candidate: int) -> Any:
+        """Returns what a candidate has in one of its columns."""
+        return self._of_candidates[name][candidate]
+
     def column(self, name: str, rows: np.ndarray) -> np.ndarray:
         """Returns the values of a column in some rows."""
         candidates, conditions = np.divmod(rows, len(self._conditions))
@@ -244,6 +386,65 @@ class _OwnColumns:
             for each in self._conditions
         ]
         return np.array(values)[conditions]
+
+
+def _figure(arguments: Arguments, argument: str, text: str) -> pb.CandidateFigure:
+    """Reads "COLUMN", "COLUMN:min", "COLUMN:max" or "COLUMN:mean"."""
+    column, _, word = text.partition(":")
+    kinds = {
+        "": pb.CandidateFigure.MEAN,
+        "mean": pb.CandidateFigure.MEAN,
+        "min": pb.CandidateFigure.MINIMUM,
+        "max": pb.CandidateFigure.MAXIMUM,
+    }
+    if word not in kinds or not column:
+        arguments.wrong(argument, f"{text} is not COLUMN, COLUMN:min, COLUMN:max or COLUMN:mean")
+    return pb.CandidateFigure(column=column, aggregate=kinds.get(word, pb.CandidateFigure.MEAN))
+
+
+def _objective(
+    arguments: Arguments, argument: str, text: str, most: bool
+) -> pb.CandidateObjective:
+    return pb.CandidateObjective(figure=_figure(arguments, argument, text), wants_most=most)
+
+
+def _constraints(
+    arguments: Arguments, where: Mapping[str, tuple[float | None, float | None]] | None
+) -> list[pb.CandidateConstraint]:
+    out = []
+    for text, limits in (where or {}).items():
+        if not isinstance(limits, (tuple, list)) or len(limits) != 2:
+            arguments.wrong("where", f"{text}: {limits!r} is not (minimum or None, maximum or None)")
+            continue
+        constraint = pb.CandidateConstraint(figure=_figure(arguments, "where", text))
+        if limits[0] is not None:
+            constraint.minimum = limits[0]
+        if limits[1] is not None:
+            constraint.maximum = limits[1]
+        out.append(constraint)
+    return out
+
+
+def _add_uncertainty(
+    arguments: Arguments, name: str, value: Quantity, request: pb.RankCandidatesRequest
+) -> None:
+    """Adds a standard uncertainty: "3%" of the value, or a quantity in the parameter's unit."""
+    share = value.strip() if isinstance(value, str) else ""
+    if share.endswith("%"):
+        try:
+            relative = float(share.removesuffix("%")) / 100
+        except ValueError:
+            arguments.wrong("uncertainties", f"{name}: {value!r} is no share")
+            return
+        path = parameter_path(arguments, "uncertainties", name)
+        request.uncertainties.add(parameter=path, relative_uncertainty=relative)
+        return
+    for path, absolute in read_varied(arguments, {name: value}).items():
+        request.uncertainties.add(parameter=path, absolute_uncertainty=absolute)
+
+
+def _counts(answer: Any) -> dict[str, int]:
+    return {name: getattr(answer, name) for name in ("excluded", "refused", "missing")}
 
 
 def _tight(name: str, values: np.ndarray) -> np.ndarray:

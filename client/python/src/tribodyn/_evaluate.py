@@ -80,7 +80,7 @@ class Extras:
     ) -> Extras:
         parameters = [elasticities] if isinstance(elasticities, str) else elasticities
         figures = [elasticity_figures] if isinstance(elasticity_figures, str) else elasticity_figures
-        paths = (_path(arguments, name) for name in parameters)
+        paths = (parameter_path(arguments, "elasticities", name) for name in parameters)
         return Extras(contact_figures, tuple(dict.fromkeys(paths)), tuple(figures))
 
     @staticmethod
@@ -108,12 +108,12 @@ class Extras:
         return out
 
 
-def _path(arguments: Arguments, name: str) -> str:
+def parameter_path(arguments: Arguments, argument: str, name: str) -> str:
     """Returns the path of a parameter, "lubricant.alpha" for one."""
     owner, _, parameter = name.partition(".")
     column = find_column(_VARIED[owner], parameter) if owner in _VARIED else None
     if column is None or column.kind != "field" or column.block is not None:
-        arguments.wrong("elasticities", f"{name} is no parameter of a lubricant or surface")
+        arguments.wrong(argument, f"{name} is no parameter of a lubricant or surface")
         return name
     return f"{owner}.{column.field.name}"
 

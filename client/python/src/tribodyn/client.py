@@ -17,6 +17,7 @@ from tribodyn._resources import AsyncResources
 from tribodyn._studies import Options
 from tribodyn.units import Quantity
 from tribodyn.v1.campaigns_pb2 import Campaign as CampaignMessage
+from tribodyn.v1.campaigns_pb2 import PromoteCandidateResponse
 from tribodyn.v1.gear_sets_pb2 import GearSet
 from tribodyn.v1.lubricants_pb2 import Lubricant
 from tribodyn.v1.schemas_pb2 import Schema
@@ -213,10 +214,117 @@ class Campaign:
         conditions, figures, "status" and "status_message"; empty: all but the two numbers."""
         return _LOOP.run(self._campaign.frame(columns, start_row=start_row, row_count=row_count))
 
-    def ranking(self) -> Frame:
-        """Returns a table of the candidates, one a row: by their mean inefficiency over the
-        conditions with their weights, the best first. Candidates without figures come last."""
-        return _LOOP.run(self._campaign.ranking())
+    def ranking(
+        self,
+        by: str = "inefficiency_energy_mean_percent",
+        *,
+        most: bool = False,
+        where: Mapping[str, tuple[float | None, float | None]] | None = None,
+        condition_weights: Sequence[float] = (),
+        uncertainties: Mapping[str, Quantity] | None = None,
+        stated_uncertainties: bool = True,
+        confidence: float = 0.95,
+        count: int = 1000,
+    ) -> Frame:
+        """Returns a table of the ``count`` best candidates (at most 1000), one a row, finished or not:
+        those with least of the figure ``by`` first, or with most of it if ``most``.
+
+        A figure is a column with values, alone for its mean over the conditions with their weights,
+        or with ":min" or ":max": "film_ratio_minimum:min". ``where`` maps figures to (minimum,
+        maximum), each a number in the unit of the column or None; candidates outside are left out.
+        ``uncertainties`` maps parameters to standard uncertainties: "3%" of the value, or a quantity;
+        of a parameter in the table each candidate's own, of another one common to all. Those that
+        lubricant and surface state count too unless ``stated_uncertainties`` is False.
+
+        Columns: what the candidates were created with, "candidate" (numbers from 0), the figures,
+        "solver_error" (a bound), "standard_uncertainty" (by the inputs), "worse_probability" (than
+        the best one) and "tied": the probability is below ``confidence``. The last three are NaN and
+        None beyond ``attrs["compared"]`` candidates. ``attrs`` counts the others as "excluded",
+        "refused" and "missing" (not computed yet).
+        """
+        return _LOOP.run(
+            self._campaign.ranking(
+                by,
+                most=most,
+                where=where,
+                condition_weights=condition_weights,
+                uncertainties=uncertainties,
+                stated_uncertainties=stated_uncertainties,
+                confidence=confidence,
+                count=count,
+            )
+        )
+
+    def pareto(
+        self,
+        second: str,
+        *,
+        second_most: bool = False,
+        first: str = "inefficiency_energy_mean_percent",
+        first_most: bool = False,
+        where: Mapping[str, tuple[float | None, float | None]] | None = None,
+        condition_weights: Sequence[float] = (),
+    ) -> Frame:
+        """Returns a table of the candidates that no other one beats in both of two figures, the best
+        by the first one first. Figures and ``where`` as of ranking(). ``attrs`` counts the others as
+        "beaten", "excluded", "refused" and "missing"."""
+        return _LOOP.run(
+            self._campaign.pareto(
+                second,
+                second_most=second_most,
+                first=first,
+                first_most=first_most,
+                where=where,
+                condition_weights=condition_weights,
+            )
+        )
+
+    def effects(
+        self,
+        figure: str = "inefficiency_energy_mean_percent",
+        *,
+        columns: Sequence[str] = (),
+        where: Mapping[str, tuple[float | None, float | None]] | None = None,
+        condition_weights: Sequence[float] = (),
+        coverage: float = 0.95,
+    ) -> Frame:
+        """Returns a table of what columns of the candidates do to a figure, the largest effect first:
+        from the lowest value to the highest one, or from the most frequent text to another one, by a
+        linear model without interactions. "effect_minimum" and "effect_maximum" hold the effect with
+        the probability ``coverage``. ``columns``: empty means all; ``attrs["left_out"]`` says which
+        have no effect and why. Figures and ``where`` as of ranking()."""
+        return _LOOP.run(
+            self._campaign.effects(
+                figure,
+                columns=columns,
+                where=where,
+                condition_weights=condition_weights,
+                coverage=coverage,
+            )
+        )
+
+    def promote(
+        self,
+        candidate: int,
+        lubricant: str = "",
+        *,
+        surface: str = "",
+        display_name: str = "",
+        validate_only: bool = False,
+    ) -> PromoteCandidateResponse:
+        """Makes a candidate (number from 0) a lubricant with the id ``lubricant``, and where
+        candidates have surface parameters of their own a surface with the id ``surface``. Their
+        provenance names campaign, candidate and base. Returns the message with both. Raises
+        TribodynError ALREADY_EXISTS if an id is taken; ``validate_only`` writes nothing."""
+        return _LOOP.run(
+            self._campaign.promote(
+                candidate,
+                lubricant,
+                surface=surface,
+                display_name=display_name,
+                validate_only=validate_only,
+            )
+        )
 
     def pause(self) -> None:
         """Pauses it; what is computed is kept."""

@@ -134,6 +134,9 @@ struct HistoryOptions {
   int maximum_points = 0;      ///< 0: all rows; else an overview where there are more
 };
 
+/// Most points of one call of evaluate_points().
+inline constexpr int kMostPointsOfACall = 2000;
+
 /// The part of a campaign to read.
 struct CampaignRowsOptions {
   std::vector<std::string> columns = {};  ///< empty: refusal_number and all figures
@@ -276,6 +279,17 @@ class Connection {
   void stream_campaign(const std::string& name, const CampaignRowsOptions& options,
                        const std::function<void(const v1::HistorySchema&)>& on_schema,
                        const std::function<void(const HistoryRows&)>& on_rows);
+
+  /// The best candidates of a campaign, and which of them cannot be told apart from the best one.
+  v1::RankCandidatesResponse rank_candidates(const v1::RankCandidatesRequest& request);
+  /// The candidates that no other one beats in both of two objectives.
+  v1::FindParetoCandidatesResponse find_pareto_candidates(
+      const v1::FindParetoCandidatesRequest& request);
+  /// The effects of columns of candidates on a figure.
+  v1::EstimateCandidateEffectsResponse estimate_candidate_effects(
+      const v1::EstimateCandidateEffectsRequest& request);
+  /// Makes a candidate a lubricant and a surface.
+  v1::PromoteCandidateResponse promote_candidate(const v1::PromoteCandidateRequest& request);
 
   v1::EvaluateContactResponse evaluate_contact(const v1::EvaluateContactRequest& request);
 
