@@ -24,10 +24,9 @@ namespace {
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t kSeed = 1;  // any: equal requests give equal answers
 constexpr double kDefaultTolerance = 1e-3, kLeastTolerance = 1e-8;
-/// Tolerance of points with contact figures, relative to that of the request [-]. The uncertainty
-/// of the inputs moves the extremes of the transmission error by as little as 0.1 %: with the
-/// request's tolerance the errors of the solver would leave 92 of 100 true extremes in the 95 %
-/// intervals.
+/// Tolerance of points with contact figures, relative to that of the request [-]: the uncertainty
+/// of the inputs moves the extremes of the transmission error by as little as 0.1 %, the default
+/// tolerance.
 constexpr double kContactTolerance = 0.1;
 
 /// Sets standard uncertainty and interval from the draws that the model did not refuse.
