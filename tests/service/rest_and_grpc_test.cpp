@@ -530,6 +530,10 @@ void RestAndGrpc::check_campaigns() {
   check("FindParetoCandidates", "name: 'campaigns/1'", Code::INVALID_ARGUMENT);
   check("EstimateCandidateEffects", "name: 'campaigns/1'", Code::INVALID_ARGUMENT);
   check("EstimateCandidateEffects", "name: 'campaigns/9'", Code::NOT_FOUND);
+  const std::string four = campaign("values: 0.1 values: 0.12 values: 0.14 values: 0.13", "");
+  check("CreateCampaign", "campaign {" + four + "}");
+  wait("campaigns/3", v1::Campaign::SUCCEEDED);
+  check("EstimateCandidateEffects", "name: 'campaigns/3'");
   check("PromoteCandidate",
         "name: 'campaigns/1' candidate: 1 lubricant_id: 'promoted' surface_id: 'promoted'");
   check("PromoteCandidate",

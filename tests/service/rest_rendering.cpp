@@ -87,6 +87,8 @@ std::string query_text(const Message& message, const FieldDescriptor& field, int
       return std::to_string(reflection.GetInt32(message, &field));
     case FieldDescriptor::CPPTYPE_INT64:
       return std::to_string(reflection.GetInt64(message, &field));
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      return fmt::format("{}", reflection.GetDouble(message, &field));
     case FieldDescriptor::CPPTYPE_ENUM:
       return reflection.GetEnum(message, &field)->name();
     case FieldDescriptor::CPPTYPE_MESSAGE:
