@@ -430,6 +430,51 @@ TEST_F(ImportTest, AProfileBecomesASurfaceOfItsMoments) {
   EXPECT_NEAR(both.message().composite_rms_height_metres(), std::sqrt(0.5) * 500e-9, 5e-9);
 }
 
+TEST_F(ImportTest, SixProfilesGiveTheParametersTheUncertaintyOfTheirSpread) {
+  v1::ImportSurfaceProfilesRequest request;
+  request.set_surface_id("six");
+  request.mutable_surface()->set_tribofilm_shear_strength_pascals(2e6);
+  request.mutable_surface()->set_asperity_friction_coefficient(0.17);
+  for (const v1::FlankMember member : {v1::FLANK_MEMBER_PINION, v1::FLANK_MEMBER_GEAR}) {
+    for (const double amplitude : {280, 300, 320}) {  // heel, middle, toe
+      v1::SurfaceProfile& profile = *request.add_profiles();
+      profile.set_member(member);
+      profile.set_direction(v1::PROFILE_DIRECTION_AXIAL);
+      profile.set_csv(waves(amplitude, 50, 2001));
+    }
+  }
+  const auto uncertainty_of = [](const v1::Surface& surface, const char* field) {
+    double out = 0;
+    for (const auto& entry : surface.provenance()) {
+      if (entry.field() == field) out = entry.standard_uncertainty();
+    }
+    return out;
+  };
+  const auto made = import_surface_profiles(app_, request);
+  ASSERT_TRUE(made.ok()) << complaints(made.error());
+  const v1::Surface& six = made.message();
+  // The mean squares of 280, 300 and 320 nm scatter by 13.3 %, the mean of three by 13.3 %/sqrt(3),
+  // the sum of two such means by 13.3 %/sqrt(6); sigma_G and beta_G by half of that.
+  constexpr double kScatter = 0.133;
+  const double expected = 0.5 * kScatter / std::sqrt(6);
+  EXPECT_NEAR(
+      uncertainty_of(six, "composite_rms_height_metres") / six.composite_rms_height_metres(),
+      expected, 1e-3);
+  EXPECT_NEAR(uncertainty_of(six, "asperity_radius_metres") / six.asperity_radius_metres(),
+              expected, 1e-3);
+  for (const auto& entry : six.provenance()) {
+    if (entry.field() == "asperity_radius_metres") {
+      EXPECT_THAT(entry.source(), HasSubstr("uncertainty from the spread of 6 profiles"));
+    }
+  }
+
+  request.set_surface_id("four");
+  request.mutable_profiles()->DeleteSubrange(4, 2);  // the gear was measured once
+  const auto four = import_surface_profiles(app_, request);
+  ASSERT_TRUE(four.ok()) << complaints(four.error());
+  EXPECT_EQ(uncertainty_of(four.message(), "composite_rms_height_metres"), 0) << "not known";
+}
+
 TEST_F(ImportTest, AnUnfilteredProfileCausesAWarningAtTheImportAndWithEveryResult) {
   v1::ImportSurfaceProfilesRequest request;
   request.mutable_surface()->set_tribofilm_shear_strength_pascals(2e6);

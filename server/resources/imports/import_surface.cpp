@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <iterator>
 #include <set>
 #include <vector>
 
 #include "core/model_options.h"
 #include "core/refusal.h"
 #include "core/surface/gaussian_filter.h"
+#include "core/surface/measured_surface.h"
 #include "core/surface/roughness_product.h"
 #include "core/surface/spectral_moments.h"
 #include "server/contract/check_message.h"
@@ -169,29 +170,14 @@ SpectralMoments moments_of(const v1::SurfaceMeasurement& measurement) {
           measurement.mean_square_curvature_per_square_metre()};
 }
 
-SpectralMoments mean_of(const std::vector<SpectralMoments>& repeats) {
-  SpectralMoments out{};
-  const auto count = static_cast<double>(repeats.size());
-  for (const SpectralMoments& each : repeats) {
-    out.m0 += each.m0 / count;
-    out.m2 += each.m2 / count;
-    out.m4 += each.m4 / count;
-  }
-  return out;
-}
-
-/// Returns the moments of one member's isotropic surface: repeats of a direction are averaged, two
-/// directions are combined by eq 46. Returns nullopt if the member was not measured.
-std::optional<SpectralMoments> member_moments(const v1::Surface& surface, v1::FlankMember member,
-                                              const AsPublished& as_published) {
-  std::map<v1::ProfileDirection, std::vector<SpectralMoments>> found;
-  for (const v1::SurfaceMeasurement& each : surface.measurements()) {
-    if (each.member() == member) found[each.direction()].push_back(moments_of(each));
-  }
-  if (found.empty()) return std::nullopt;
-  if (found.size() == 1) return mean_of(found.begin()->second);
-  return equivalent_isotropic_moments(mean_of(found[v1::PROFILE_DIRECTION_AXIAL]),
-                                      mean_of(found[v1::PROFILE_DIRECTION_RADIAL]), as_published);
+MeasuredProfile measured_profile(const v1::SurfaceMeasurement& measurement) {
+  return {measurement.member() == v1::FLANK_MEMBER_PINION ? FlankMember::kPinion
+          : measurement.member() == v1::FLANK_MEMBER_GEAR ? FlankMember::kGear
+                                                          : FlankMember::kBoth,
+          measurement.direction() == v1::PROFILE_DIRECTION_AXIAL    ? ProfileDirection::kAxial
+          : measurement.direction() == v1::PROFILE_DIRECTION_RADIAL ? ProfileDirection::kRadial
+                                                                    : ProfileDirection::kAny,
+          moments_of(measurement)};
 }
 
 std::string join(const std::string& a, const std::string& b) {
@@ -257,13 +243,31 @@ std::string unmeasured_text(const v1::Surface& surface) {
   return text;
 }
 
+/// Adds the provenance of a parameter; `uncertainty` 0: not known.
+void add_profile_provenance(const char* field, double uncertainty, const AsPublished& as_published,
+                            const std::string& warning, v1::Surface& surface) {
+  v1::ParameterProvenance* entry = surface.add_provenance();
+  std::string source = "measured profiles, eqs 45 to 48";
+  if (as_published.eq46_square_root_of_sum) source += ", eq 46 as published";
+  if (uncertainty > 0) {
+    source +=
+        fmt::format("; uncertainty from the spread of {} profiles", surface.measurements_size());
+  }
+  entry->set_field(field);
+  entry->set_provenance(v1::PROVENANCE_FITTED);
+  entry->set_source(source);
+  entry->set_standard_uncertainty(uncertainty);
+  entry->set_warning(warning);
+  entry->set_computed(true);
+}
+
 void set_parameters(v1::Surface& surface, const AsPublished& as_published) {
-  const auto both = member_moments(surface, v1::FLANK_MEMBER_UNSPECIFIED, as_published);
-  const auto pinion = member_moments(surface, v1::FLANK_MEMBER_PINION, as_published);
-  const auto gear = member_moments(surface, v1::FLANK_MEMBER_GEAR, as_published);
-  const SpectralMoments one = both ? *both : pinion ? *pinion : *gear;
-  const Roughness roughness =
-      greenwood_tripp_roughness(composite_moments(pinion.value_or(one), gear.value_or(one)));
+  std::vector<MeasuredProfile> profiles;
+  for (const v1::SurfaceMeasurement& each : surface.measurements()) {
+    profiles.push_back(measured_profile(each));
+  }
+  const Roughness roughness = roughness_of_profiles(profiles, as_published);
+  const Roughness uncertainty = roughness_uncertainty(profiles, as_published).value_or(Roughness{});
   std::string warning = unmeasured_text(surface);
   for (const std::string& each : {unresolved_text(surface), product_text(roughness)}) {
     if (!each.empty()) warning = join(warning, each);
@@ -271,15 +275,10 @@ void set_parameters(v1::Surface& surface, const AsPublished& as_published) {
   surface.set_asperity_density_per_square_metre(roughness.asperity_density);
   surface.set_asperity_radius_metres(roughness.asperity_radius);
   surface.set_composite_rms_height_metres(roughness.composite_rms_height);
-  for (const char* field : kFromProfiles) {
-    v1::ParameterProvenance* entry = surface.add_provenance();
-    entry->set_field(field);
-    entry->set_provenance(v1::PROVENANCE_FITTED);
-    entry->set_source(as_published.eq46_square_root_of_sum
-                          ? "measured profiles, eqs 45 to 48, eq 46 as published"
-                          : "measured profiles, eqs 45 to 48");
-    entry->set_warning(warning);
-    entry->set_computed(true);
+  const double uncertainties[] = {uncertainty.asperity_density, uncertainty.asperity_radius,
+                                  uncertainty.composite_rms_height};
+  for (std::size_t k = 0; k < std::size(kFromProfiles); ++k) {
+    add_profile_provenance(kFromProfiles[k], uncertainties[k], as_published, warning, surface);
   }
 }
 

@@ -14,7 +14,8 @@ namespace tribodyn::server {
 /// Computes a surface from measured profiles and returns it accepted (accept_resource.h) with the
 /// name `name`. Steps: moments of each profile (eq 45), mean of the repeats of a direction,
 /// isotropic surface of two directions of a member (eq 46), sum of both members (eq 47),
-/// Greenwood-Tripp parameters (eq 48). If only one member was measured, the other is assumed to be
+/// Greenwood-Tripp parameters (eq 48), with the standard uncertainties that the spread of the
+/// repeats makes. If only one member was measured, the other is assumed to be
 /// equal; if only one direction was measured, the surface is assumed to be isotropic; both with a
 /// warning in the provenance. Violations name the profile, the row (line of its text) and the
 /// column. Returns nullopt if there is a violation.

@@ -1,0 +1,87 @@
+#include "core/surface/measured_surface.h"
+
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <vector>
+
+namespace tribodyn {
+namespace {
+
+constexpr double Roughness::*kRoughnessParameters[] = {
+    &Roughness::asperity_density, &Roughness::asperity_radius, &Roughness::composite_rms_height};
+
+bool is_of_group(const MeasuredProfile& a, const MeasuredProfile& b) {
+  return a.member == b.member && a.direction == b.direction;
+}
+
+/// The mean moments of a member and direction; nullopt without profile.
+std::optional<SpectralMoments> group_mean(std::span<const MeasuredProfile> profiles,
+                                          FlankMember member, ProfileDirection direction) {
+  SpectralMoments sum{};
+  int count = 0;
+  for (const MeasuredProfile& each : profiles) {
+    if (each.member != member || each.direction != direction) continue;
+    sum.m0 += each.moments.m0;
+    sum.m2 += each.moments.m2;
+    sum.m4 += each.moments.m4;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return SpectralMoments{sum.m0 / count, sum.m2 / count, sum.m4 / count};
+}
+
+/// The isotropic surface of a member; nullopt if it was not measured.
+std::optional<SpectralMoments> member_moments(std::span<const MeasuredProfile> profiles,
+                                              FlankMember member, const AsPublished& as_published) {
+  const auto axial = group_mean(profiles, member, ProfileDirection::kAxial);
+  const auto radial = group_mean(profiles, member, ProfileDirection::kRadial);
+  if (axial && radial) return equivalent_isotropic_moments(*axial, *radial, as_published);
+  if (axial) return axial;
+  return radial ? radial : group_mean(profiles, member, ProfileDirection::kAny);
+}
+
+}  // namespace
+
+Roughness roughness_of_profiles(std::span<const MeasuredProfile> profiles,
+                                const AsPublished& as_published) {
+  const auto both = member_moments(profiles, FlankMember::kBoth, as_published);
+  const auto pinion = member_moments(profiles, FlankMember::kPinion, as_published);
+  const auto gear = member_moments(profiles, FlankMember::kGear, as_published);
+  const SpectralMoments one = both ? *both : pinion ? *pinion : *gear;
+  return greenwood_tripp_roughness(composite_moments(pinion.value_or(one), gear.value_or(one)));
+}
+
+std::optional<Roughness> roughness_uncertainty(std::span<const MeasuredProfile> profiles,
+                                               const AsPublished& as_published) {
+  std::array<double, std::size(kRoughnessParameters)> variances{};
+  std::vector<bool> is_done(profiles.size());
+  for (std::size_t first = 0; first < profiles.size(); ++first) {
+    if (is_done[first]) continue;
+    std::vector<Roughness> without;  // each profile of the group left out at a time
+    for (std::size_t left_out = first; left_out < profiles.size(); ++left_out) {
+      if (!is_of_group(profiles[left_out], profiles[first])) continue;
+      is_done[left_out] = true;
+      std::vector<MeasuredProfile> rest(profiles.begin(), profiles.end());
+      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(left_out));
+      if (!rest.empty()) without.push_back(roughness_of_profiles(rest, as_published));
+    }
+    const auto count = static_cast<double>(without.size());
+    if (count < 2) return std::nullopt;
+    for (std::size_t k = 0; k < variances.size(); ++k) {
+      double mean = 0;
+      for (const Roughness& each : without) mean += each.*kRoughnessParameters[k] / count;
+      for (const Roughness& each : without) {
+        const double difference = each.*kRoughnessParameters[k] - mean;
+        variances[k] += (count - 1) / count * difference * difference;
+      }
+    }
+  }
+  Roughness out{};
+  for (std::size_t k = 0; k < variances.size(); ++k) {
+    out.*kRoughnessParameters[k] = std::sqrt(variances[k]);
+  }
+  return out;
+}
+
+}  // namespace tribodyn
