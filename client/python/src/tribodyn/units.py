@@ -127,7 +127,9 @@ def without_unit(name: str) -> str:
 
 def is_temperature(name: str) -> bool:
     """Whether a name means a temperature, not a difference of temperatures."""
-    return unit_of(name) in ("C", "K") and without_unit(name).endswith("temperature")
+    return unit_of(name) in ("C", "K") and without_unit(name).endswith(
+        ("temperature", "temperatures")
+    )
 
 
 def quantity(value: Quantity, name: str, *, unit: str | None = None) -> float:
