@@ -28,9 +28,9 @@ export function useLoaded<T>(load: (signal: AbortSignal) => Promise<T>, key: str
   return { ...(state.key === key ? state : { value: state.value }), isStale: state.key !== key, reload: () => setRound((count) => count + 1) } as Loaded<T>;
 }
 
-/** Calls a method that stores nothing, again whenever the body changes; without a body, never. */
-export const useAnswer = <T>(method: string, body: unknown | null): Loaded<T | null> =>
-  useLoaded((signal) => (body === null ? Promise.resolve(null) : change<T>('POST', url(method), body, signal)), `${method} ${JSON.stringify(body)}`);
+/** Calls a method that stores nothing, again whenever the body or the version changes; without a body, never. */
+export const useAnswer = <T>(method: string, body: unknown | null, version = 0): Loaded<T | null> =>
+  useLoaded((signal) => (body === null ? Promise.resolve(null) : change<T>('POST', url(method), body, signal)), `${method} ${JSON.stringify(body)} ${version}`);
 
 const LUBRICANT_FIELDS = 'name,display_name,characterisation,revision,base_oil_class';
 

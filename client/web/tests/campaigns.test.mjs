@@ -60,9 +60,52 @@ async function complete(name) {
   await page.getByText('180 of 180 rows are computed').waitFor();
 }
 
-test('rows are ordered by a column, and every number is one of the service', async () => {
+test('candidates that cannot be told apart share the first rank, and one becomes a fluid', async () => {
   const { name } = await server.call('POST', '/v1/campaigns', campaignOf(30));
   await page.goto(`${server.address}/${name}`);
+  await complete(name);
+  const ranks = () => page.locator('.ranking tbody tr td:first-child').allTextContents();
+  await page.locator('.ranking tbody tr').nth(29).waitFor();
+  assert.deepEqual((await ranks()).slice(0, 3), ['1', '2', '3']);
+  assert.deepEqual(await foreignNumbers(page), []);
+  await page.getByLabel("Standard uncertainty of the candidates' parameters, %").fill('5');
+  await page.getByLabel("Standard uncertainty of the candidates' parameters, %").press('Enter');
+  await page.getByText('1=', { exact: true }).nth(1).waitFor();
+  const answer = await server.call('POST', `/v1/${name}:rank`, {
+    count: 100, objective: { figure: { column: 'inefficiency_energy_mean_percent' } },
+    uncertainties: ['lubricant.pressure_viscosity_coefficient_per_pascal', 'surface.asperity_friction_coefficient'].map((parameter) => ({ parameter, relative_uncertainty: 0.05 })),
+  });
+  assert.equal((await ranks()).filter((each) => each === '1=').length, answer.candidates.filter((each) => each.comparison?.tied).length);
+  assert.deepEqual(await foreignNumbers(page), []);
+  await page.getByRole('button', { name: '0', exact: true }).click();
+  await page.getByLabel('Id of a new fluid and surface').fill('candidate-0');
+  await page.getByRole('button', { name: 'Make it a fluid' }).click();
+  await page.waitForURL(/\/fluids\/candidate-0$/);
+  const fluid = await server.call('GET', '/v1/lubricants/candidate-0');
+  assert.equal(fluid.pressure_viscosity_coefficient_per_pascal, 1.2e-8);
+  assert.equal((await server.call('GET', '/v1/surfaces/candidate-0')).asperity_friction_coefficient, 0.08);
+});
+
+test('the front of two objectives and the effects of all columns are those of the service', async () => {
+  const { name } = await server.call('POST', '/v1/campaigns', campaignOf(30, { contact_figures: true }));
+  await page.goto(`${server.address}/${name}?view=pareto&other=-film_ratio_minimum.MINIMUM`);
+  await complete(name);
+  await page.getByText('are beaten by none in both').waitFor();
+  const answer = await server.call('POST', `/v1/${name}:findPareto`, {
+    second: { figure: { column: 'film_ratio_minimum', aggregate: 'MINIMUM' }, wants_most: true },
+  });
+  const members = page.getByRole('region', { name: 'The front' }).locator('tbody tr');
+  assert.equal(await members.count(), answer.total_size);
+  assert.deepEqual(await foreignNumbers(page), []);
+  await page.getByRole('button', { name: 'Main effects' }).click();
+  await page.getByRole('table', { name: 'Main effects' }).waitFor();
+  assert.match(await page.getByRole('table', { name: 'Main effects' }).locator('tbody th').first().textContent(), /Pressure-viscosity coefficient/);
+  assert.deepEqual(await foreignNumbers(page), []);
+});
+
+test('rows are ordered by a column, and every number is one of the service', async () => {
+  const { name } = await server.call('POST', '/v1/campaigns', campaignOf(30));
+  await page.goto(`${server.address}/${name}?view=rows`);
   await complete(name);
   await page.getByRole('button', { name: 'Mesh loss', exact: true }).click();
   await page.waitForURL(/order=mesh_loss_power_watts/);

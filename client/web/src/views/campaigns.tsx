@@ -10,12 +10,14 @@ import { Missing } from '../components/missing';
 import { Failure, Notice } from '../components/notice';
 import { Num } from '../components/num';
 import { Swatch } from '../components/swatch';
+import { Validity } from '../components/validity';
 import { TakeAway } from '../components/take_away';
 import { ago, idOf, revisionIdOf, rounded } from '../format';
 import { titlesOf, useLoaded, useLubricants } from '../resources';
 import { address, place, set } from '../router';
 import { useStore } from '../store';
 import { readNumber, shown, sumpText, units, written } from '../units';
+import { Effects, Pareto, Promote, Ranking } from './campaign_decisions';
 
 const PAGE = 100;
 const MOST_STREAMS = 3; // a browser opens six connections to a server
@@ -192,7 +194,7 @@ function CampaignPage({ name }: { name: string }) {
           {campaign.state === 'CANCELLED' && '; the campaign was cancelled'}{campaign.state === 'RUNNING' && ' …'}</span>
       </p>
       {rows.error !== undefined && <Failure error={rows.error} onRetry={rows.reload} />}
-      {rows.value && <Results campaign={campaign} rows={rows.value} />}
+      {rows.value && <Results campaign={campaign} rows={rows.value} version={version} />}
     </>
   );
 }
@@ -208,12 +210,13 @@ function Downloads({ campaign, rows }: { campaign: Campaign; rows: Rows }) {
   );
 }
 
-const VIEWS: [string, string][] = [['rows', 'Table'], ['plot', 'One against another'], ['parallel', 'Parallel coordinates']];
+const VIEWS: [string, string][] = [['rank', 'Ranking'], ['pareto', 'Pareto front'], ['effects', 'Main effects'], ['rows', 'Table'], ['plot', 'One against another'], ['parallel', 'Parallel coordinates']];
 
-function Results({ campaign, rows }: { campaign: Campaign; rows: Rows }) {
+function Results({ campaign, rows, version }: { campaign: Campaign; rows: Rows; version: number }) {
   const { query } = useStore(place);
   useStore(units);
-  const view = query.get('view') ?? 'rows';
+  const view = query.get('view') ?? 'rank';
+  const isDecision = ['rank', 'pareto', 'effects'].includes(view);
   const conditions = campaign.conditions ?? [];
   const condition = conditions.length < 2 || query.get('at') === 'all' ? null : Math.min(conditions.length - 1, Number(query.get('at') ?? 0));
   const ranges = useMemo(() => rangesOf(query.get('b')), [query.get('b')]);
@@ -227,14 +230,15 @@ function Results({ campaign, rows }: { campaign: Campaign; rows: Rows }) {
   const chosen = query.has('c') ? Number(query.get('c')) : null;
   const chosenRow = chosen === null ? null : all.find((row) => rows.candidates[row] === chosen) ?? null;
   const choose = (row: number | null) => set({ c: row === null ? undefined : String(rows.candidates[row]) });
+  const decision = { campaign, rows, ranges, version, chosen, onChoose: (candidate: number | null) => set({ c: candidate === null ? undefined : String(candidate) }) };
   const shownColumns = useMemo(() => rows.columns.filter((each) => varies(each, all) || each.name === 'inefficiency_energy_mean_percent'), [rows, all]);
   return (
     <>
       <div class="tabs" role="group" aria-label="View">
-        {VIEWS.map(([id, words]) => <button key={id} aria-pressed={view === id} onClick={() => set({ view: id === 'rows' ? undefined : id })}>{words}</button>)}
+        {VIEWS.map(([id, words]) => <button key={id} aria-pressed={view === id} onClick={() => set({ view: id === 'rank' ? undefined : id })}>{words}</button>)}
       </div>
       <div class="choices">
-        {conditions.length > 1 && (
+        {conditions.length > 1 && !isDecision && (
           <label class="inline">Condition
             <select value={condition === null ? 'all' : String(condition)} onChange={(event) => set({ at: event.currentTarget.value === '0' ? undefined : event.currentTarget.value })}>
               {conditions.map((each, k) => <option key={k} value={k}>{each.speed_kilometres_per_hour} km/h, {sumpText(each.sump_temperature_celsius)}{each.ascent_angle_degrees ? `, ${each.ascent_angle_degrees}° uphill` : ''}</option>)}
@@ -242,21 +246,27 @@ function Results({ campaign, rows }: { campaign: Campaign; rows: Rows }) {
             </select>
           </label>
         )}
-        <span class="muted" role="status">
+        {!isDecision && <span class="muted" role="status">
           {kept.length === all.length ? `${all.length} rows` : `${kept.length} of ${all.length} rows are within the ranges`}
           {rows.isCut && `, of the first ${MOST_ROWS} of the campaign`}
-        </span>
+        </span>}
         {ranges.length > 0 && <button onClick={() => set({ b: undefined })}>Show all rows</button>}
       </div>
       {(campaign.candidates ?? 0) > MOST_CANDIDATES && (
         <Notice kind="caution">The page shows figures alone: the campaign has more than {MOST_CANDIDATES} candidates. The download of its rows has everything.</Notice>
       )}
+      {view === 'rank' && <Ranking {...decision} />}
+      {view === 'pareto' && <Pareto {...decision} />}
+      {view === 'effects' && <Effects {...decision} />}
       {view === 'plot' && <Plot rows={rows} columns={shownColumns} all={all} within={within} chosen={chosenRow} onChoose={choose} />}
       {view === 'parallel' && <Coordinates columns={shownColumns} all={all} within={within} ranges={ranges} chosen={chosenRow} onRange={setRange} />}
       {view === 'rows' && <Table rows={rows} columns={shownColumns} kept={kept} order={orderName} chosen={chosenRow} onChoose={choose} />}
       <Ranges columns={shownColumns} ranges={ranges} onRange={setRange} />
       {chosenRow !== null && <Candidate campaign={campaign} rows={rows} row={chosenRow} onLeave={() => choose(null)} />}
       <Refusals campaign={campaign} />
+      <Validity remarks={[]} isChecked={false}>
+        <li class="note">Rows of campaigns have no warnings. Make a candidate a fluid: its curve says where laws leave their ranges.</li>
+      </Validity>
     </>
   );
 }
@@ -446,6 +456,7 @@ function Candidate({ campaign, rows, row, onLeave }: { campaign: Campaign; rows:
     <section class="read-out" aria-labelledby="candidate">
       <div class="heading"><h2 id="candidate">Candidate {candidate}</h2><button onClick={onLeave}>Leave</button></div>
       {refusal && <Notice kind="caution">{refusal.message}</Notice>}
+      <Promote key={candidate} campaign={campaign} rows={rows} candidate={candidate} />
       <dl class="facts pairs">
         {rows.texts.map((each) => <><dt>{each.name}</dt><dd>{each.values[candidate]}</dd></>)}
         {rows.columns.map((column) => (
