@@ -23,10 +23,10 @@ std::vector<double> ragged_signal(std::size_t samples) {
 }
 
 TEST(OrderSpectrum, CosinesComeBackWithAmplitudeAndPhase) {
-  constexpr int kCycles = 2, kSamples = 96;
+  constexpr int kCycles = 2, kSamplesPerCycle = 96;
   std::vector<double> z;
-  for (int i = 0; i < kCycles * kSamples; ++i) {
-    const double phase = static_cast<double>(i) / kSamples;
+  for (int i = 0; i < kCycles * kSamplesPerCycle; ++i) {
+    const double phase = static_cast<double>(i) / kSamplesPerCycle;
     z.push_back(5 + 2 * std::cos(kTurn * phase + 0.3) + 0.25 * std::cos(kTurn * 2.5 * phase - 3));
   }
   const OrderSpectrum spectrum = order_spectrum(z, 1000);
