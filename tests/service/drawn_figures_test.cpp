@@ -94,7 +94,7 @@ TEST(DrawnFigures, OfACurveTakeAThirdOfThePointsAndHaveTheIntervalsThatEachSpeed
 }
 
 TEST(DrawnFigures, OfLubricantsWhoseErrorsAreCommonHaveTheirDifference) {
-  const std::vector<double> speeds = speeds_between(30, 130, kUnderSanitizer ? 20 : 10);
+  const std::vector<double> speeds = speeds_between(30, 130, 10);
   Fluids fluids;
   fluids.add("lubricants/a", data_sheet(103, 15.1));
   fluids.add("lubricants/b", data_sheet(95, 14.4));
