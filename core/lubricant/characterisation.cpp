@@ -24,7 +24,9 @@ constexpr double kMisfit = 3;                          // standard deviations wo
 using Stated = LubricantParameters<std::optional<KnownParameter>>;
 using Known = LubricantParameters<KnownParameter>;
 
-std::string celsius(double temperature) { return number_text(temperature - kZeroCelsius) + " C"; }
+std::string in_celsius(double temperature) {
+  return number_text(temperature - kZeroCelsius) + " C";
+}
 
 // Gathers a fluid step by step: density, viscosity, then what rests on both.
 class Assembly {
@@ -150,7 +152,7 @@ class Assembly {
                   "least squares through " + std::to_string(points.size()) + " densities");
       return;
     }
-    set_density(Provenance::kDerived, "density measured at " + celsius(coldest->temperature) +
+    set_density(Provenance::kDerived, "density measured at " + in_celsius(coldest->temperature) +
                                           "; expansion by ASTM D1250, lubricating oils");
     warn("EXPANSION_ESTIMATED", "density_temperature_slope",
          "Density is known at one temperature; it changes by " +
@@ -256,7 +258,7 @@ class Assembly {
       warn("VOGEL_REFERENCE_TEMPERATURE_ASSUMED", "vogel_reference_temperature",
            "T_0 cannot be fitted to two viscosities and was set from ASTM D341 to " +
                known_text(fit.reference_temperature, deviation(2)) + " +/- " +
-               number_text(deviation(2), 2) + " K; the viscosity at " + celsius(kCold) +
+               number_text(deviation(2), 2) + " K; the viscosity at " + in_celsius(kCold) +
                " is then uncertain by " +
                number_text(100 * relative_viscosity_uncertainty(fit, kCold), 2) +
                " %. Add a viscosity at a low temperature to determine it.");
@@ -283,7 +285,7 @@ class Assembly {
       warn("VISCOSITY_MISFIT", "vogel_viscosity_prefactor",
            "The fitted law is " + number_text(100 * std::abs(off), 3) + " % " +
                (off > 0 ? "above" : "below") + " the viscosity measured at " +
-               celsius(point.temperature) + ", more than three times its uncertainty.");
+               in_celsius(point.temperature) + ", more than three times its uncertainty.");
     }
   }
 
@@ -298,8 +300,8 @@ class Assembly {
       return;
     }
     warn("VISCOSITY_EXTRAPOLATED", "vogel_viscosity_prefactor",
-         "Viscosity was measured from " + celsius(coldest->point.temperature) + " to " +
-             celsius(warmest->point.temperature) +
+         "Viscosity was measured from " + in_celsius(coldest->point.temperature) + " to " +
+             in_celsius(warmest->point.temperature) +
              "; axle oil works from below 40 to above 100 C, where the law extrapolates.");
   }
 
@@ -326,7 +328,7 @@ class Assembly {
       const double rho = density(fluid, temperature);
       if (warm && std::isnormal(viscosity) && viscosity < 1e12 && rho > 0) continue;
       throw Refusal("PARAMETER_OUT_OF_RANGE",
-                    "At " + celsius(temperature) + " the laws of viscosity and density give " +
+                    "At " + in_celsius(temperature) + " the laws of viscosity and density give " +
                         (warm ? number_text(viscosity) + " Pa s" : "no viscosity") + " and " +
                         number_text(rho) + " kg/m3.");
     }
@@ -365,7 +367,7 @@ class Assembly {
                               belongs ? "not stated" : "temperature of the estimate"};
     if (belongs) {
       warn("TEMPERATURE_ASSUMED", parameter,
-           std::string(parameter) + " is not stated; " + celsius(typical) + " is taken.");
+           std::string(parameter) + " is not stated; " + in_celsius(typical) + " is taken.");
     }
   }
 

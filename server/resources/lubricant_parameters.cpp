@@ -79,7 +79,7 @@ bool is_set(const v1::Lubricant& lubricant, const Member& member) {
   return lubricant.GetReflection()->HasField(lubricant, descriptor(member));
 }
 
-v1::Provenance to_message(Provenance provenance) {
+v1::Provenance provenance_message(Provenance provenance) {
   switch (provenance) {
     case Provenance::kPublished:
       return v1::PROVENANCE_PUBLISHED;
@@ -101,7 +101,7 @@ v1::Provenance to_message(Provenance provenance) {
   return v1::PROVENANCE_UNSPECIFIED;
 }
 
-BaseOilClass to_core(v1::Lubricant::BaseOilClass base_oil) {
+BaseOilClass base_oil_class(v1::Lubricant::BaseOilClass base_oil) {
   switch (base_oil) {
     case v1::Lubricant::BASE_OIL_CLASS_GROUP_I:
       return BaseOilClass::kGroupI;
@@ -140,7 +140,7 @@ DensityLaw density_law_of(const FluidMeasurements& fluid) {
                                                 : density_law(points, fluid.base_oil);
 }
 
-ViscosityPoint to_core(const v1::ViscosityMeasurement& row, const DensityLaw* law) {
+ViscosityPoint viscosity_point(const v1::ViscosityMeasurement& row, const DensityLaw* law) {
   const double temperature = row.temperature_celsius() + kZeroCelsius;
   double viscosity = row.dynamic_viscosity_millipascal_seconds() * kMillipascals;
   if (row.has_kinematic_viscosity_square_millimetres_per_second()) {
@@ -205,7 +205,7 @@ Entered entered(const v1::Lubricant& lubricant) {
   const v1::LubricantMeasurements& measured = lubricant.measurements();
   Entered result;
   FluidMeasurements& out = result.fluid;
-  out.base_oil = to_core(lubricant.base_oil_class());
+  out.base_oil = base_oil_class(lubricant.base_oil_class());
   out.kinematic_viscosity_40 = stated_number(
       measured.kinematic_viscosity_40_celsius_square_millimetres_per_second(), kSquareMillimetres);
   out.kinematic_viscosity_100 = stated_number(
@@ -236,7 +236,7 @@ Entered entered(const v1::Lubricant& lubricant) {
     }
     out.stated.*member.stated = known;
   }
-  const Lubricant laws = server::to_core(lubricant);
+  const Lubricant laws = to_core(lubricant);
   out.pressure_viscosity_law = laws.pressure_viscosity_law;
   out.law_parameters = laws.law_parameters;
   std::optional<DensityLaw> law;
@@ -246,7 +246,7 @@ Entered entered(const v1::Lubricant& lubricant) {
     if (row.has_kinematic_viscosity_square_millimetres_per_second() && !law) {
       law = density_law_of(out);
     }
-    out.viscosities.push_back(to_core(row, law ? &*law : nullptr));
+    out.viscosities.push_back(viscosity_point(row, law ? &*law : nullptr));
     result.viscosity_fields.push_back(field_of(row, i));
   }
   return result;
@@ -274,7 +274,7 @@ void set_computed(v1::Lubricant& lubricant, const Member& member, const Characte
   const KnownParameter& known = fluid.parameters.*member.known;
   lubricant.GetReflection()->SetDouble(&lubricant, descriptor(member), known.value);
   v1::ParameterProvenance* entry = entry_of(lubricant, member.field);
-  entry->set_provenance(to_message(known.provenance));
+  entry->set_provenance(provenance_message(known.provenance));
   entry->set_source(known.source);
   entry->set_standard_uncertainty(known.standard_uncertainty.value_or(0));
   entry->set_computed(true);

@@ -26,7 +26,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr char kAlpha[] = "lubricant.pressure_viscosity_coefficient_per_pascal";
+constexpr char kAlphaColumn[] = "lubricant.pressure_viscosity_coefficient_per_pascal";
 constexpr char kFriction[] = "surface.asperity_friction_coefficient";
 constexpr int kCandidates = 12;
 
@@ -36,7 +36,7 @@ v1::Campaign table_of_candidates() {
   v1::Campaign out;
   out.set_lubricant("lubricants/paper-fluid-1");
   v1::CandidateColumn& alpha = *out.add_candidate_columns();
-  alpha.set_path(kAlpha);
+  alpha.set_path(kAlphaColumn);
   v1::CandidateColumn& friction = *out.add_candidate_columns();
   friction.set_path(kFriction);
   for (const char* name : {"name", "additive", "concentration", "cost"}) {
@@ -155,10 +155,10 @@ TEST_F(CandidateDecisions, CandidatesWithinTheirUncertaintyAreTies) {
   EXPECT_EQ(exact.candidates(1).comparison().worse_probability(), 1);
 
   v1::ParameterUncertainty& uncertainty = *request.add_uncertainties();
-  uncertainty.set_parameter(kAlpha);
+  uncertainty.set_parameter(kAlphaColumn);
   uncertainty.set_relative_uncertainty(0.02);
   const v1::RankCandidatesResponse out = rank(request);
-  EXPECT_THAT(out.own_uncertain_parameters(), ElementsAre(kAlpha));
+  EXPECT_THAT(out.own_uncertain_parameters(), ElementsAre(kAlphaColumn));
   EXPECT_EQ(out.shared_uncertain_parameters_size(), 0);
   EXPECT_TRUE(out.candidates(0).comparison().tied());
   EXPECT_EQ(out.candidates(0).comparison().worse_probability(), 0.5);
@@ -339,7 +339,7 @@ TEST_F(CandidateDecisions, EffectsOfAllColumnsNameThoseWithoutOne) {
     left_out.push_back(each.column() + " " + v1::ColumnWithoutEffect::Reason_Name(each.reason()));
   }
   EXPECT_THAT(columns,
-              testing::UnorderedElementsAre(kAlpha, kFriction, "additive", "concentration"));
+              testing::UnorderedElementsAre(kAlphaColumn, kFriction, "additive", "concentration"));
   EXPECT_THAT(left_out,
               testing::UnorderedElementsAre("batch CONSTANT", "cost FOLLOWS_FROM_OTHERS"));
   EXPECT_GT(found.message().explained_share(), 0.99) << "the parameters explain the inefficiency";
@@ -369,7 +369,7 @@ TEST_F(CandidateDecisions, APromotedCandidateHasItsNumbersAndTheirOrigin) {
   EXPECT_EQ(lubricant.derived_from(), "lubricants/paper-fluid-1@1");
   const auto base = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   for (const v1::ParameterProvenance& each : lubricant.provenance()) {
-    const bool is_overridden = std::string("lubricant.") + each.field() == kAlpha;
+    const bool is_overridden = std::string("lubricant.") + each.field() == kAlphaColumn;
     EXPECT_THAT(each.source(), HasSubstr("lubricants/paper-fluid-1@1"));
     if (is_overridden) {
       EXPECT_EQ(each.provenance(), v1::PROVENANCE_USER);
