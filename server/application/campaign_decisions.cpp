@@ -370,7 +370,7 @@ void keep_candidates(const std::vector<std::size_t>& candidates, EffectFactors& 
   }
 }
 
-v1::ColumnWithoutEffect::Reason to_message(NoEffect reason) {
+v1::ColumnWithoutEffect::Reason reason_message(NoEffect reason) {
   switch (reason) {
     case NoEffect::kConstant:
       return v1::ColumnWithoutEffect::CONSTANT;
@@ -521,7 +521,7 @@ Outcome<v1::EstimateCandidateEffectsResponse> estimate_candidate_effects(
   for (const auto& [factor, reason] : found->left_out) {
     v1::ColumnWithoutEffect& column = *out.add_left_out();
     column.set_column(factors.columns[factor]);
-    column.set_reason(to_message(reason));
+    column.set_reason(reason_message(reason));
   }
   return out;
 }
