@@ -107,7 +107,8 @@ void check_grid(const v1::RigGrid& grid, Violations& violations) {
 void check_grid_loads(const v1::RigGrid& grid, const RigScene& scene, Violations& violations) {
   const std::vector<double> loads = grid_loads(grid, scene);
   for (int i = 0; i < grid.mean_pressures_pascals_size(); ++i) {
-    const double load = loads[static_cast<std::size_t>(grid.loads_newtons_size() + i)];
+    const double load =
+        loads[static_cast<std::size_t>(grid.loads_newtons_size()) + static_cast<std::size_t>(i)];
     if (load >= kLeastRigLoad && load <= kMostRigLoad) continue;
     violations.push_back(
         {fmt::format("grid.mean_pressures_pascals[{}]", i),

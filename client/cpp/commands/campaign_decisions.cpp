@@ -95,7 +95,7 @@ void set_selection(const DecisionFlags& flags, Request& request) {
 }
 
 std::string figure_text(const v1::CandidateFigure& figure) {
-  const std::string column = figure.column().empty() ? kUsualColumn : figure.column();
+  std::string column = figure.column().empty() ? kUsualColumn : figure.column();
   switch (figure.aggregate()) {
     case v1::CandidateFigure::MINIMUM:
       return "least " + column;

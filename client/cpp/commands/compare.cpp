@@ -147,9 +147,9 @@ Command compare_command() {
       {"tribodyn compare paper-fluid-1 my-oil --speed 20,60,100 --sump 90",
        "tribodyn compare my-oil --speed 60",
        "tribodyn compare oil-a oil-b oil-c --speed 20,60,100,140 --plot compared.svg",
-       "tribodyn compare my-oil their-oil --speed 30,60,120 --weights 1,2,1 "
-       "--estimate-correlation 0.8 --output csv",
-       "tribodyn compare my-oil their-oil --speed 30,60,120 --sumps 40,90 --sump-weights 1,3"},
+       "tribodyn compare oil-a oil-b --speed 30,60 --estimate-correlation 0.8 --output csv",
+       "tribodyn compare oil-a oil-b --speed 30,60,120 --weights 1,2,1",
+       "tribodyn compare oil-a oil-b --speed 30,60,120 --sumps 40,90 --sump-weights 1,3"},
       {},
       {},
       {}};

@@ -513,8 +513,8 @@ Command screen_command() {
        "tribodyn screen candidates.csv --like my-oil --speeds 20,60 --weights 1,2 --csv all.csv",
        "tribodyn screen oils.csv --like my-oil --uncertainty pressure-viscosity=3% --pareto cost",
        "tribodyn screen oils.csv --like my-oil --effects --plot screening.svg",
-       "tribodyn screen oils.csv --like my-oil --contact-figures --pareto film_ratio_minimum "
-       "--pareto-most",
+       "tribodyn screen oils.csv --like my-oil --contact-figures --pareto "
+       "contact_temperature_mean_kelvin",
        "tribodyn screen candidates.csv --like my-oil --output csv",
        "tribodyn screen --campaign 12 --weights 2,1,1"},
       {},
