@@ -513,8 +513,7 @@ Command screen_command() {
        "tribodyn screen candidates.csv --like my-oil --speeds 20,60 --weights 1,2 --csv all.csv",
        "tribodyn screen oils.csv --like my-oil --uncertainty pressure-viscosity=3% --pareto cost",
        "tribodyn screen oils.csv --like my-oil --effects --plot screening.svg",
-       "tribodyn screen oils.csv --like my-oil --contact-figures --pareto "
-       "contact_temperature_mean_kelvin",
+       "tribodyn screen oils.csv --like my-oil --contact-figures --csv all.csv",
        "tribodyn screen candidates.csv --like my-oil --output csv",
        "tribodyn screen --campaign 12 --weights 2,1,1"},
       {},
