@@ -8,7 +8,7 @@
 
 namespace tribodyn {
 
-/// What is known of each candidate in one respect: numbers, or words.
+/// A property of all candidates, as numbers or as words.
 struct Factor {
   std::vector<double> numbers;     ///< by candidate, finite; empty: there are words
   std::vector<std::string> words;  ///< by candidate

@@ -109,7 +109,7 @@ HWY_INLINE bool pressure_growth_falls(const GrowthLaw<double>& law, double tempe
   return false;
 }
 
-/// ln of the viscosity [Pa s] that the law reaches nowhere; infinite if it has none.
+/// ln of the upper bound of the viscosity [Pa s], such as eta_g; infinite if the law has no bound.
 HWY_INLINE double log_greatest_viscosity(const LubricantOf<double>& oil) {
   switch (oil.pressure_viscosity_law) {
     case PressureViscosityLaw::kRoelands:

@@ -229,7 +229,7 @@ PointResult solve_operating_point(const Scene& scene, const OperatingCondition& 
 PointResult solve_prepared_point(PreparedScene& scene, const OperatingCondition& condition,
                                  const PointOptions& options);
 
-/// How the loaded flanks fare over the steady state.
+/// Figures of the loaded flanks over the steady state.
 struct ContactSummary {
   double film_ratio_minimum;              ///< lambda_s [-]
   double film_ratio_mean;                 ///< weighted with load and time [-]
@@ -242,7 +242,7 @@ struct ContactSummary {
   double flash_temperature_rise_maximum;  ///< (dT_f)_av [K]
 };
 
-/// The figures of a point that PointOptions::tolerance speaks of, and others on request.
+/// The figures of a point to which PointOptions::tolerance applies, and others on request.
 struct PointFigures {
   double pinion_torque = 0;                        ///< T_s [N m]
   double wheel_torque = 0;                         ///< T_w [N m]

@@ -34,7 +34,7 @@ Roughness roughness_of_profiles(std::span<const MeasuredProfile> profiles,
 ///   u^2 = sum over groups of (n - 1)/n sum_i (y_(i) - mean of y_(i))^2.
 ///
 /// It holds for means over the flank, and keeps the correlation of the moments of a profile.
-/// Returns nullopt if a member and direction has a single profile, whose spread nobody measured.
+/// Returns nullopt if a member and direction has a single profile, which has no spread.
 /// Source: B. Efron and C. Stein, Ann. Statist. 9 (1981) 586-596.
 std::optional<Roughness> roughness_uncertainty(std::span<const MeasuredProfile> profiles,
                                                const AsPublished& as_published);

@@ -100,7 +100,7 @@ class DecisionTable {
   /// Reads all figures, and selects the candidates that the constraints, the last figures, keep.
   CandidateSelection read_all(
       const google::protobuf::RepeatedPtrField<v1::CandidateConstraint>& constraints) {
-    // First, because the campaign may run: what is computed from here on counts as missing.
+    // Read before the figures, because the campaign may run: rows written later count as missing.
     const std::vector<bool> missing = missing_candidates();
     for (const FoundFigure& each : found_) figures_.push_back(read(each));
     return select_candidates(missing, figures_, constraints);

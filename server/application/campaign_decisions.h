@@ -9,17 +9,17 @@ namespace tribodyn::server {
 
 // Decisions about the candidates of a campaign. All of them throw; the dispatcher guards them.
 
-/// The best candidates, and which of them cannot be told apart from the best one.
+/// Returns the best candidates of a campaign and marks those that tie with the best one.
 Outcome<v1::RankCandidatesResponse> rank_candidates(Application& application,
                                                     const v1::RankCandidatesRequest& request,
                                                     const CallContext& call = {});
 
-/// The candidates that no other one beats in both of two objectives.
+/// Returns the candidates that no other one beats in both of two objectives.
 Outcome<v1::FindParetoCandidatesResponse> find_pareto_candidates(
     Application& application, const v1::FindParetoCandidatesRequest& request,
     const CallContext& call = {});
 
-/// The effects of columns of candidates on a figure.
+/// Returns the effects of columns of candidates on a figure.
 Outcome<v1::EstimateCandidateEffectsResponse> estimate_candidate_effects(
     Application& application, const v1::EstimateCandidateEffectsRequest& request,
     const CallContext& call = {});

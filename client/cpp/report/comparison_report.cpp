@@ -228,8 +228,8 @@ std::string best_sentence(const std::vector<const v1::ComparedLubricant*>& ranke
               : " " + joined(apart, ", ") + (apart.size() == 1 ? " loses more." : " lose more."));
 }
 
-/// Returns what to measure to tell the first lubricant that cannot be told apart from the best;
-/// empty if there is none, or no input has an uncertainty.
+/// Returns the sentence that names the input to measure first, so that the best lubricant and the
+/// next one that ties with it can be distinguished; empty if none ties or no input is uncertain.
 std::string decisive_measurement(const std::vector<const v1::ComparedLubricant*>& ranked) {
   for (const v1::ComparedLubricant* each : ranked) {
     const v1::ComparedDifference& difference = each->mean_difference_from_best();

@@ -21,7 +21,7 @@ constexpr double kSpectrumPanelHeight = 130;
 constexpr double kSpectrumPitch = 180;
 constexpr double kSpectrumTop = 100;
 
-/// Says what order 1 is, and what was transformed.
+/// Returns the sentences that define order 1 and describe the transformed samples.
 std::string normalisation(const v1::ReadSpectrumResponse& spectrum) {
   std::string out =
       "Order 1 is the mesh frequency, " + significant(spectrum.mesh_frequency_hertz()) +

@@ -280,12 +280,12 @@ class Connection {
                        const std::function<void(const v1::HistorySchema&)>& on_schema,
                        const std::function<void(const HistoryRows&)>& on_rows);
 
-  /// The best candidates of a campaign, and which of them cannot be told apart from the best one.
+  /// Returns the best candidates of a campaign and marks those that tie with the best one.
   v1::RankCandidatesResponse rank_candidates(const v1::RankCandidatesRequest& request);
-  /// The candidates that no other one beats in both of two objectives.
+  /// Returns the candidates that no other one beats in both of two objectives.
   v1::FindParetoCandidatesResponse find_pareto_candidates(
       const v1::FindParetoCandidatesRequest& request);
-  /// The effects of columns of candidates on a figure.
+  /// Returns the effects of columns of candidates on a figure.
   v1::EstimateCandidateEffectsResponse estimate_candidate_effects(
       const v1::EstimateCandidateEffectsRequest& request);
   /// Makes a candidate a lubricant and a surface.
