@@ -162,6 +162,7 @@ test('one click computes the curve of another model beside the full one', async 
 test('the loss of each curve is split, and a zoom stands in the address', async () => {
   await showCurves(['paper-fluid-1', 'paper-fluid-2'], '&y=split');
   await page.getByText('boundary friction', { exact: true }).waitFor();
+  await page.locator('.histories canvas').nth(1).waitFor();
   assert.equal(await page.locator('.histories canvas').count(), 2);
   const plot = await page.locator('.histories .u-over').first().boundingBox();
   await page.mouse.move(plot.x + 0.4 * plot.width, plot.y + 50);
@@ -172,6 +173,54 @@ test('the loss of each curve is split, and a zoom stands in the address', async 
   await page.reload();
   await page.getByRole('button', { name: 'Show all speeds' }).click();
   await page.waitForURL((url) => !url.search.includes('x='));
+  assert.deepEqual(page.complaints, []);
+});
+
+/** The main plot as text, and the first and the last row of pixels of a line relative to its height. */
+const pictureOf = () => page.locator('.figure canvas').first().evaluate((canvas) => {
+  const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  const rows = [];
+  for (let i = 0; i < data.length; i += 4) {
+    const colors = [data[i], data[i + 1], data[i + 2]];
+    if (data[i + 3] > 200 && Math.max(...colors) - Math.min(...colors) > 60) rows.push(Math.floor(i / 4 / canvas.width) / canvas.height);
+  }
+  return { text: canvas.toDataURL(), first: rows[0], last: rows.at(-1) };
+});
+
+const painted = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+
+test('a plot is moved with Shift without a new table, and shows in the end what its address shows', async () => {
+  await showCurves(['paper-fluid-1', 'paper-fluid-2'], '&x=60-75&u=0');
+  await page.waitForFunction(() => document.querySelectorAll('.read-out tbody tr').length === 2);
+  await painted();
+  const before = await pictureOf();
+  assert.ok(before.last - before.first > 0.5, 'the lines that are shown fill the height');
+  await page.evaluate(() => {
+    window.tableChanges = 0;
+    new MutationObserver((changes) => (window.tableChanges += changes.length)).observe(document.querySelector('.read-out'), { subtree: true, childList: true, characterData: true });
+  });
+  const plot = await page.locator('.figure .u-over').first().boundingBox();
+  await page.keyboard.down('Shift');
+  await page.mouse.move(plot.x + 0.8 * plot.width, plot.y + 50);
+  await page.evaluate(() => (window.tableChanges = 0));
+  await page.mouse.down();
+  await page.mouse.move(plot.x + 0.4 * plot.width, plot.y + 50, { steps: 8 });
+  await painted();
+  const during = await pictureOf();
+  assert.notEqual(during.text, before.text);
+  assert.ok(during.last - during.first > 0.3, 'the lines are drawn while they move');
+  assert.match(page.url(), /x=60-75/);
+  assert.equal(await page.evaluate(() => window.tableChanges), 0);
+  await page.mouse.up();
+  await page.keyboard.up('Shift');
+  await page.waitForURL(/x=66(\.\d+)?-81/);
+  await page.mouse.move(5, 5);
+  await painted();
+  const after = await pictureOf();
+  await page.reload();
+  await page.waitForFunction(() => document.querySelectorAll('.read-out tbody tr').length === 2);
+  await painted();
+  assert.equal((await pictureOf()).text, after.text);
   assert.deepEqual(page.complaints, []);
 });
 

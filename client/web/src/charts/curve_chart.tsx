@@ -3,23 +3,30 @@ import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import { useColors } from './theme';
 import { tickText } from './ticks';
-import { areasOf, colorOf, corners, DASHES, endsBranch, hasMarker, lastOf, MARKERS, opacityOf, rangeOf, spread, type Colors, type Line, type Spec } from './spec';
+import { Contents, Tiles, type Places } from './contents';
+import { colorOf, envelopeOf, extentOf, hasMarker, lastOf, rangeOf, spread, type Colors, type Envelope, type Spec } from './spec';
 
 const FONT = 'system-ui, sans-serif';
 const MOST_PLAIN = 10_000; // greater numbers are written as powers
 const SUPERSCRIPTS = '⁰¹²³⁴⁵⁶⁷⁸⁹';
 
-/** The text at a tick of a logarithmic axis; null has none. */
+/** The text at a tick of a logarithmic axis: null and what is no round number have none. */
 function logarithmicText(value: number | null): string {
-  if (value === null || value <= MOST_PLAIN) return value === null ? '' : tickText(value);
+  if (value === null) return '';
   const exponent = Math.floor(Math.log10(value) + 1e-9);
   const factor = Math.round(value / 10 ** exponent);
+  if (Math.abs(value / 10 ** exponent - factor) > 1e-6) return '';
+  if (value <= MOST_PLAIN) return tickText(value);
   return `${factor === 1 ? '' : `${factor}·`}10${[...String(exponent)].map((each) => SUPERSCRIPTS[Number(each)]).join('')}`;
 }
 
-const WHISKER_PIXELS = 1.5; // a smaller error is thinner than the line
+const hatches = new Map<string, CanvasPattern | string>();
 
+/** Oblique lines of a color as a fill, made once. */
 function hatch(context: CanvasRenderingContext2D, color: string, ratio: number): CanvasPattern | string {
+  const key = `${color} ${ratio}`;
+  const known = hatches.get(key);
+  if (known) return known;
   const tile = document.createElement('canvas');
   tile.width = tile.height = Math.round(6 * ratio);
   const ink = tile.getContext('2d')!;
@@ -29,7 +36,9 @@ function hatch(context: CanvasRenderingContext2D, color: string, ratio: number):
   ink.moveTo(0, tile.height);
   ink.lineTo(tile.width, 0);
   ink.stroke();
-  return context.createPattern(tile, 'repeat') ?? color;
+  const made = context.createPattern(tile, 'repeat') ?? color;
+  hatches.set(key, made);
+  return made;
 }
 
 function drawRegions(u: uPlot, spec: Spec, colors: Colors, isSmall: boolean): void {
@@ -60,26 +69,6 @@ function drawRegions(u: uPlot, spec: Spec, colors: Colors, isSmall: boolean): vo
   ctx.restore();
 }
 
-function drawAreas(u: uPlot, spec: Spec, colors: Colors): void {
-  const { ctx, bbox } = u;
-  ctx.save();
-  ctx.beginPath();
-  ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
-  ctx.clip();
-  for (const line of spec.lines) {
-    ctx.fillStyle = colorOf(line.series, colors);
-    ctx.globalAlpha = opacityOf(line);
-    for (const area of areasOf(line)) {
-      ctx.beginPath();
-      const corner = (i: number, value: number) => ctx.lineTo(u.valToPos(area.x[i]!, 'x', true), u.valToPos(value, 'y', true));
-      area.high.forEach((value, i) => corner(i, value));
-      for (let i = area.low.length - 1; i >= 0; --i) corner(i, area.low[i]!);
-      ctx.fill();
-    }
-  }
-  ctx.restore();
-}
-
 function drawLevels(u: uPlot, spec: Spec, colors: Colors, isSmall: boolean): void {
   const { ctx, bbox } = u;
   const ratio = devicePixelRatio;
@@ -97,58 +86,16 @@ function drawLevels(u: uPlot, spec: Spec, colors: Colors, isSmall: boolean): voi
     ctx.moveTo(bbox.left, y);
     ctx.lineTo(bbox.left + bbox.width, y);
     ctx.stroke();
-    if (!isSmall) ctx.fillText(level.label, bbox.left + 6 * ratio, y - 3 * ratio);
-  }
-  ctx.restore();
-}
-
-function drawMarkers(u: uPlot, spec: Spec, colors: Colors, isSmall: boolean): void {
-  const { ctx, bbox } = u;
-  const ratio = devicePixelRatio;
-  ctx.save();
-  ctx.beginPath();
-  ctx.rect(bbox.left - 5 * ratio, bbox.top - 5 * ratio, bbox.width + 10 * ratio, bbox.height + 10 * ratio);
-  ctx.clip();
-  for (const line of spec.lines) {
-    if (spec.hasMarkers === false || !hasMarker(line.series)) continue;
-    ctx.strokeStyle = colorOf(line.series, colors);
-    ctx.lineWidth = 1.5 * ratio;
-    const radius = (isSmall ? 2 : 3.2) * ratio;
-    const shape = corners(MARKERS[line.series]!, radius);
-    // Markers need room: every n-th speed has one where there are many.
-    const pixels = bbox.width / ratio / Math.max(1, line.x.length);
-    const step = Math.max(1, Math.ceil((isSmall ? 14 : 10) / pixels));
-    line.x.forEach((at, i) => {
-      const value = line.y[i];
-      if (value === null || value === undefined) return;
-      const x = u.valToPos(at, 'x', true);
-      const y = u.valToPos(value, 'y', true);
-      if (endsBranch(line, i)) {
-        const cap = (isSmall ? 4 : 8) * ratio;
-        ctx.beginPath();
-        ctx.moveTo(x, y - cap);
-        ctx.lineTo(x, y + cap);
-        ctx.stroke();
-      }
-      if (i % step !== 0) return;
-      const error = line.error?.[i];
-      if (error && !isSmall && spec.hasErrors !== false) {
-        const reach = Math.abs(u.valToPos(value + error, 'y', true) - y);
-        if (reach > WHISKER_PIXELS * ratio) {
-          ctx.beginPath();
-          ctx.moveTo(x, y - reach);
-          ctx.lineTo(x, y + reach);
-          ctx.stroke();
-        }
-      }
-      ctx.beginPath();
-      if (shape === null) ctx.arc(x, y, radius, 0, 2 * Math.PI);
-      else shape.forEach(([dx, dy], k) => (k === 0 ? ctx.moveTo(x + dx, y + dy) : ctx.lineTo(x + dx, y + dy)));
-      ctx.closePath();
-      ctx.fillStyle = line.hollow[i] ? colors.background : colorOf(line.series, colors);
-      ctx.fill();
-      ctx.stroke();
-    });
+    if (isSmall) continue;
+    // A rim of the background keeps the words readable over lines.
+    ctx.save();
+    ctx.setLineDash([]);
+    ctx.strokeStyle = colors.background;
+    ctx.lineWidth = 4 * ratio;
+    ctx.lineJoin = 'round';
+    ctx.strokeText(level.label, bbox.left + 6 * ratio, y - 3 * ratio);
+    ctx.restore();
+    ctx.fillText(level.label, bbox.left + 6 * ratio, y - 3 * ratio);
   }
   ctx.restore();
 }
@@ -181,67 +128,105 @@ function drawLabels(u: uPlot, spec: Spec, colors: Colors): void {
   ctx.restore();
 }
 
-/** Where a line is broken, in pixels: from the last value before a null to the first one after it. */
-function gapsOf(u: uPlot, line: Line): [number, number][] {
-  const gaps: [number, number][] = [];
-  let last = -1;
-  line.y.forEach((value, i) => {
-    if (value === null) return;
-    if (last >= 0 && i > last + 1) gaps.push([u.valToPos(line.x[last]!, 'x', true), u.valToPos(line.x[i]!, 'x', true)]);
-    last = i;
-  });
-  return gaps;
-}
-
-/** Lines over one axis of speeds; undefined where a line has no such speed. */
-function aligned(spec: Spec): uPlot.AlignedData {
-  const speeds = [...new Set(spec.lines.flatMap((line) => line.x))].sort((a, b) => a - b);
-  const columns = spec.lines.map((line) => {
-    const values = new Map(line.x.map((x, i) => [x, line.y[i]]));
-    return speeds.map((x) => (values.has(x) ? values.get(x) : undefined));
-  });
-  return [speeds, ...columns] as uPlot.AlignedData;
+function drawContents(u: uPlot, contents: Contents, tiles: Tiles | null, yRange: [number, number]): void {
+  const { ctx, bbox } = u;
+  const ratio = devicePixelRatio;
+  const range: [number, number] = [u.scales['x']!.min!, u.scales['x']!.max!];
+  if (tiles) {
+    tiles.draw(ctx, { ...bbox, ratio, range, y: (value) => u.valToPos(value, 'y', true) - bbox.top }, yRange.join());
+    return;
+  }
+  const places: Places = { x: (value) => u.valToPos(value, 'x', true), y: (value) => u.valToPos(value, 'y', true), ratio };
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(bbox.left - 5 * ratio, bbox.top - 5 * ratio, bbox.width + 10 * ratio, bbox.height + 10 * ratio);
+  ctx.clip();
+  contents.paint(ctx, places, ...range);
+  ctx.restore();
 }
 
 const WHEEL_ZOOM = 1.002; // change of the span by one unit of a wheel
 const SETTLING_MILLISECONDS = 250; // after the last turn of a wheel
 
-/** Moves a plot while it is dragged with Shift, zooms it with Ctrl and the wheel; `onEnd` gets the new range. */
-function addMoves(u: uPlot, onEnd: (range: [number, number]) => void): void {
-  const all: [number, number] = [u.data[0][0] ?? 0, u.data[0].at(-1) ?? 1];
+/** What a plot shows of its axes, and whether it is being moved. */
+interface Motion {
+  isMoving: boolean;
+  y: [number, number]; // range of the vertical axis
+}
+
+/**
+ * Moves a plot while it is dragged with Shift, zooms it with Ctrl and the wheel; `onEnd` gets the new
+ * range. What is shown changes at most once a frame.
+ */
+function addMoves(u: uPlot, motion: Motion, isLogarithmic: boolean, onEnd: (range: [number, number]) => void): void {
+  const forward = isLogarithmic ? Math.log10 : (value: number) => value;
+  const back = isLogarithmic ? (value: number) => 10 ** value : (value: number) => value;
+  const all = [u.data[0][0] ?? 0, u.data[0].at(-1) ?? 1].map(forward) as [number, number];
+  let wanted: [number, number] | null = null;
+  let frame = 0;
+  const apply = () => {
+    cancelAnimationFrame(frame);
+    frame = 0;
+    if (wanted) u.setScale('x', { min: back(wanted[0]), max: back(wanted[1]) });
+    wanted = null;
+  };
   const show = (from: number, to: number) => {
     const span = Math.min(to - from, all[1] - all[0]);
     const min = Math.min(Math.max(from, all[0]), all[1] - span);
-    u.setScale('x', { min, max: min + span });
+    wanted = [min, min + span];
+    if (frame === 0) frame = requestAnimationFrame(apply);
   };
-  const present = (): [number, number] => [u.scales['x']!.min!, u.scales['x']!.max!];
+  const present = (): [number, number] => wanted ?? [forward(u.scales['x']!.min!), forward(u.scales['x']!.max!)];
   let start: { x: number; min: number; max: number } | null = null;
   u.over.addEventListener('pointerdown', (event) => {
     if (!event.shiftKey || event.button !== 0) return;
     u.over.setPointerCapture(event.pointerId);
+    u.setCursor({ left: -10, top: -10 });
     const [min, max] = present();
     start = { x: event.clientX, min, max };
+    motion.isMoving = true;
   });
   u.over.addEventListener('pointermove', (event) => {
     if (!start) return;
     const distance = ((event.clientX - start.x) / u.over.clientWidth) * (start.max - start.min);
     show(start.min - distance, start.max - distance);
   });
-  u.over.addEventListener('pointerup', () => {
-    if (start) onEnd(present());
+  const end = () => {
+    if (!start) return;
     start = null;
-  });
+    motion.isMoving = false;
+    const [min, max] = present().map(back) as [number, number];
+    wanted = null;
+    cancelAnimationFrame(frame);
+    frame = 0;
+    u.setScale('x', { min, max });
+    onEnd([min, max]);
+  };
+  u.over.addEventListener('pointerup', end);
+  u.over.addEventListener('pointercancel', end);
   let timer: number | undefined;
   u.over.addEventListener('wheel', (event) => {
     if (!event.ctrlKey) return;
     event.preventDefault();
     const [min, max] = present();
-    const at = u.posToVal(event.offsetX, 'x');
+    const at = min + (event.offsetX / u.over.clientWidth) * (max - min);
     const factor = WHEEL_ZOOM ** event.deltaY;
     show(at - (at - min) * factor, at + (max - at) * factor);
     clearTimeout(timer);
-    timer = window.setTimeout(() => onEnd(present()), SETTLING_MILLISECONDS);
+    timer = window.setTimeout(() => {
+      apply();
+      onEnd([u.scales['x']!.min!, u.scales['x']!.max!]);
+    }, SETTLING_MILLISECONDS);
   }, { passive: false });
+}
+
+/** The range of the vertical axis of a plot that is moved: it stays as long as it holds the lines. */
+function movedRange(spec: Spec, envelope: Envelope, present: [number, number], from: number, to: number): [number, number] {
+  const extent = extentOf(envelope, from, to);
+  if (!extent || (extent[0] >= present[0] && extent[1] <= present[1])) return present;
+  // Room for what comes next: the lines are painted afresh less often.
+  const ahead = (to - from) / 2;
+  return rangeOf(spec, envelope, from - ahead, to + ahead);
 }
 
 export interface CurveChartProps {
@@ -249,6 +234,7 @@ export interface CurveChartProps {
   height: number;
   isSmall?: boolean;
   sync: string;
+  xRange?: [number, number] | undefined; // that is shown; default: that of the spec
   onSpeed?: (speed: number) => void;
   onPick?: (speed: number) => void;
   /** If set, the owner zooms: a dragged range, or null for all. */
@@ -256,11 +242,13 @@ export interface CurveChartProps {
 }
 
 /** A plot of curves over speed: a drag zooms, with Shift it moves; a double click goes back; the cursor snaps to speeds. */
-export function CurveChart({ spec, height, isSmall = false, sync, onSpeed, onPick, onZoom }: CurveChartProps) {
+export function CurveChart({ spec, height, isSmall = false, sync, xRange = spec.xRange, onSpeed, onPick, onZoom }: CurveChartProps) {
   const box = useRef<HTMLDivElement>(null);
+  const shown = useRef<{ plot: uPlot; all: [number, number] } | null>(null);
   const colors = useColors();
   const handlers = useRef({ onSpeed, onPick, onZoom });
   handlers.current = { onSpeed, onPick, onZoom };
+  const isOwned = onZoom !== undefined;
 
   useEffect(() => {
     const width = box.current!.clientWidth;
@@ -272,7 +260,15 @@ export function CurveChart({ spec, height, isSmall = false, sync, onSpeed, onPic
       grid: { stroke: colors.grid, width: 1 },
       ticks: { stroke: colors.grid, width: 1, size: 4 },
     };
-    const data = aligned(spec);
+    const envelope = envelopeOf(spec);
+    const contents = new Contents(spec, colors, isSmall);
+    const tiles = isSmall ? null : new Tiles(contents, spec.xIsLogarithmic === true);
+    const motion: Motion = { isMoving: false, y: rangeOf(spec, envelope) };
+    const all: [number, number] = [envelope.x[0] ?? 0, envelope.x.at(-1) ?? 1];
+    if (all[0] === all[1]) {
+      all[0] -= 0.5;
+      all[1] += 0.5;
+    }
     const plot = new uPlot(
       {
         width,
@@ -283,11 +279,11 @@ export function CurveChart({ spec, height, isSmall = false, sync, onSpeed, onPic
           sync: { key: sync },
           y: false,
           // The snapped cursor makes each click look like a drag to uPlot, which would swallow the click.
-          drag: { x: true, y: false, setScale: onZoom === undefined, click: () => {} },
+          drag: { x: true, y: false, setScale: !isOwned, click: () => {} },
           // With Shift a drag moves the plot: see addMoves().
           bind: {
             mousedown: (_u, _target, handler) => (event) => { if (!event.shiftKey) handler(event); return null; },
-            mousemove: (_u, _target, handler) => (event) => { if (!event.shiftKey || event.buttons === 0) handler(event); return null; },
+            mousemove: (_u, _target, handler) => (event) => { if (!motion.isMoving) handler(event); return null; },
           },
           points: { show: false },
           move: (u, left, top) => {
@@ -296,34 +292,32 @@ export function CurveChart({ spec, height, isSmall = false, sync, onSpeed, onPic
           },
         },
         scales: {
-          x: { time: false, ...(spec.xIsLogarithmic ? { distr: 3 as const } : {}) },
-          y: { ...(spec.yIsLogarithmic ? { distr: 3 as const } : {}), range: (u) => rangeOf(spec, u.scales['x']!.min ?? -Infinity, u.scales['x']!.max ?? Infinity) },
+          x: {
+            time: false, ...(spec.xIsLogarithmic ? { distr: 3 as const } : {}),
+            range: (_u, least, greatest) => {
+              const [min, max] = least === null || least === greatest ? all : [least, greatest];
+              motion.y = motion.isMoving ? movedRange(spec, envelope, motion.y, min, max) : rangeOf(spec, envelope, min, max);
+              return [min, max];
+            },
+          },
+          y: { ...(spec.yIsLogarithmic ? { distr: 3 as const } : {}), range: () => motion.y },
         },
         axes: [
           { ...axis, size: isSmall ? 24 : 30, space: isSmall ? 45 : 60 },
-          { ...axis, size: isSmall ? 44 : 52, space: isSmall ? 26 : 36, ...(spec.yIsLogarithmic ? { values: (_u: uPlot, all: (number | null)[]) => all.map(logarithmicText) } : {}) },
+          { ...axis, size: isSmall ? 44 : 52, space: isSmall ? 26 : 36, values: (_u: uPlot, all: (number | null)[]) => all.map(spec.yIsLogarithmic ? logarithmicText : (each) => (each === null ? '' : tickText(each))) },
         ],
-        series: [
-          {},
-          ...spec.lines.map((line) => ({
-            stroke: colorOf(line.series, colors),
-            width: isSmall ? 1.5 : hasMarker(line.series) ? 2 : 1.2,
-            dash: DASHES[line.variant % DASHES.length]!,
-            points: { show: false },
-            ...(line.isMarksOnly ? { paths: () => null } : {}),
-            gaps: (u: uPlot) => gapsOf(u, line),
-          })),
-        ],
+        // uPlot has the axes and the cursor; the lines are painted below.
+        series: [{}, { paths: () => null, points: { show: false } }],
         hooks: {
           drawClear: [(u) => drawRegions(u, spec, colors, isSmall)],
-          drawAxes: [(u) => drawAreas(u, spec, colors)],
           draw: [
+            (u) => drawContents(u, contents, tiles, motion.y),
             (u) => drawLevels(u, spec, colors, isSmall),
-            (u) => drawMarkers(u, spec, colors, isSmall),
             (u) => hasLabels && drawLabels(u, spec, colors),
           ],
           setCursor: [
             (u) => {
+              if (motion.isMoving) return;
               const speed = u.cursor.idx === null || u.cursor.idx === undefined ? undefined : u.data[0][u.cursor.idx];
               if (speed !== undefined && u.cursor.left! >= 0) handlers.current.onSpeed?.(speed);
             },
@@ -336,7 +330,7 @@ export function CurveChart({ spec, height, isSmall = false, sync, onSpeed, onPic
           ],
           ready: [
             (u) => {
-              if (!isSmall) addMoves(u, (range) => handlers.current.onZoom?.(range));
+              if (!isSmall) addMoves(u, motion, spec.xIsLogarithmic === true, (range) => handlers.current.onZoom?.(range));
               u.over.addEventListener('dblclick', () => handlers.current.onZoom?.(null));
               let down = 0;
               u.over.addEventListener('mousedown', (event) => (down = event.clientX));
@@ -348,10 +342,10 @@ export function CurveChart({ spec, height, isSmall = false, sync, onSpeed, onPic
           ],
         },
       },
-      data,
+      [envelope.x, envelope.low],
       box.current!,
     );
-    if (spec.xRange) plot.setScale('x', { min: spec.xRange[0], max: spec.xRange[1] });
+    shown.current = { plot, all };
     const observer = new ResizeObserver(() => {
       const next = box.current?.clientWidth ?? 0;
       if (next > 0 && next !== plot.width) plot.setSize({ width: next, height });
@@ -361,7 +355,13 @@ export function CurveChart({ spec, height, isSmall = false, sync, onSpeed, onPic
       observer.disconnect();
       plot.destroy();
     };
-  }, [spec, height, colors, isSmall, sync]);
+  }, [spec, height, colors, isSmall, sync, isOwned]);
+
+  useEffect(() => {
+    const { plot, all } = shown.current!;
+    const [min, max] = xRange ?? all;
+    if (plot.scales['x']!.min !== min || plot.scales['x']!.max !== max) plot.setScale('x', { min, max });
+  }, [spec, height, colors, isSmall, sync, isOwned, xRange?.[0], xRange?.[1]]);
 
   return <div class="chart" ref={box} style={{ height: `${height}px` }} aria-hidden="true" />;
 }

@@ -73,19 +73,53 @@ export function corners(marker: Marker, r: number): [number, number][] | null {
 
 const LOGARITHMIC_ROOM = 1.2; // above and below, as a ratio
 
-/** The range of the vertical axis: all values and levels, with room above and below. */
-export function rangeOf(spec: Spec, from = -Infinity, to = Infinity): [number, number] {
-  if (spec.yRange) return spec.yRange;
-  let low = Infinity;
-  let high = -Infinity;
+/** The least and the greatest value at each place of the horizontal axis. */
+export interface Envelope {
+  x: number[]; // ascending
+  low: (number | null)[];
+  high: (number | null)[];
+}
+
+/** What all lines reach, with their intervals. */
+export function envelopeOf(spec: Spec): Envelope {
+  const ends = new Map<number, [number, number] | null>();
   for (const line of spec.lines) {
-    line.y.forEach((y, i) => {
-      if (y === null || line.x[i]! < from || line.x[i]! > to) return;
-      low = Math.min(low, y, line.low?.[i] ?? y, line.to?.[i] ?? y);
-      high = Math.max(high, y, line.high?.[i] ?? y, line.to?.[i] ?? y);
+    line.x.forEach((x, i) => {
+      const y = line.y[i];
+      const known = ends.get(x) ?? null;
+      if (y === null || y === undefined) {
+        if (!known) ends.set(x, null);
+        return;
+      }
+      const low = Math.min(y, line.low?.[i] ?? y, line.to?.[i] ?? y);
+      const high = Math.max(y, line.high?.[i] ?? y, line.to?.[i] ?? y);
+      if (!known) return ends.set(x, [low, high]);
+      known[0] = Math.min(known[0], low);
+      known[1] = Math.max(known[1], high);
     });
   }
-  if (low > high) return spec.yIsLogarithmic ? [1, 10] : [0, 1];
+  const x = [...ends.keys()].sort((a, b) => a - b);
+  return { x, low: x.map((each) => ends.get(each)?.[0] ?? null), high: x.map((each) => ends.get(each)?.[1] ?? null) };
+}
+
+/** The least and the greatest value between `from` and `to`; null without values. */
+export function extentOf(envelope: Envelope, from: number, to: number): [number, number] | null {
+  let low = Infinity;
+  let high = -Infinity;
+  envelope.x.forEach((x, i) => {
+    if (x < from || x > to || envelope.low[i] === null) return;
+    low = Math.min(low, envelope.low[i]!);
+    high = Math.max(high, envelope.high[i]!);
+  });
+  return low > high ? null : [low, high];
+}
+
+/** The range of the vertical axis: all values between `from` and `to` and the levels, with room above and below. */
+export function rangeOf(spec: Spec, envelope = envelopeOf(spec), from = -Infinity, to = Infinity): [number, number] {
+  if (spec.yRange) return spec.yRange;
+  const extent = extentOf(envelope, from, to);
+  if (!extent) return spec.yIsLogarithmic ? [1, 10] : [0, 1];
+  let [low, high] = extent;
   if (spec.yIsLogarithmic) return [low / LOGARITHMIC_ROOM, high * LOGARITHMIC_ROOM];
   for (const level of spec.levels) {
     // A level far away would flatten the lines.

@@ -152,9 +152,9 @@ export function Curves() {
   const hasErrors = query.get('e') !== '0';
   const specs = useMemo(
     () => new Map(QUANTITIES.map((each) => [each.id, {
-      ...specOf(done, each, titles, gearSet?.dynamics?.half_backlash_metres), hasErrors, ...(zoom ? { xRange: zoom } : {}),
+      ...specOf(done, each, titles, gearSet?.dynamics?.half_backlash_metres), hasErrors,
     }])),
-    [done, titles, gearSet, hasErrors, zoom, inUnits],
+    [done, titles, gearSet, hasErrors, inUnits],
   );
   const spec = useMemo(
     () => specWithIntervals(specs.get(quantity.id)!, done, quantity.columns, quantity.unit, hasBands ? groups : undefined),
@@ -162,7 +162,7 @@ export function Curves() {
   );
   const difference = useMemo(() => {
     const found = differencesOf(groups, fluidsOf(done), titles);
-    return found && { ...found, hasErrors, ...(zoom ? { xRange: zoom } : {}), parted: spec.parted, outside: spec.outside };
+    return found && { ...found, hasErrors, parted: spec.parted, outside: spec.outside };
   }, [groups, titles, spec]);
   const onZoom = (range: [number, number] | null) => set({ x: range ? range.map((each) => Number((each / speedUnit.factor).toFixed(2))).join('-') : undefined });
   const failed = jobs.filter((job) => job.simulation.state === 'FAILED' || job.simulation.state === 'CANCELLED');
@@ -249,7 +249,7 @@ export function Curves() {
                 <button aria-pressed={isSplit} onClick={() => set({ y: 'split' })}>Loss split</button>
               </div>
               {isSplit ? <LossSplit curves={done} titles={titles} xRange={zoom} onSpeed={onPlace} onZoom={onZoom} /> : (
-                <CurveChart spec={spec} height={matchMedia('(max-width: 640px)').matches ? 260 : 360} sync="curves" onSpeed={onPlace}
+                <CurveChart spec={spec} height={matchMedia('(max-width: 640px)').matches ? 260 : 360} sync="curves" xRange={zoom} onSpeed={onPlace}
                   onPick={(at) => set({ v: String(speedNear(done, at)) })} onZoom={onZoom} />
               )}
               <p class="axis-title">{spec.xLabel}</p>
@@ -265,7 +265,7 @@ export function Curves() {
             </figure>
             {uncertainty.error !== undefined && <Failure error={uncertainty.error} onRetry={uncertainty.reload} />}
             {difference && (
-              <Differences spec={difference} groups={groups!} titles={titles} fluids={fluids} reference={reference} onSpeed={onPlace} onZoom={onZoom} />
+              <Differences spec={difference} groups={groups!} titles={titles} fluids={fluids} reference={reference} xRange={zoom} onSpeed={onPlace} onZoom={onZoom} />
             )}
             <ReadOut curves={done} titles={titles} groups={hasBands ? groups : undefined} speed={speed} shownQuantity={quantity} onSpeed={setSpeed} onOpen={(curve, at) => void openPoint(curve, at)} />
             <CurveValidity curves={done} />
@@ -273,7 +273,7 @@ export function Curves() {
               {QUANTITIES.map((each) => (
                 <button key={each.id} class="multiple" aria-pressed={!isSplit && each.id === quantity.id} onClick={() => set({ y: each.id === 'inefficiency' ? undefined : each.id })}>
                   <span>{each.label}{each.unit.symbol && `, ${each.unit.symbol}`}</span>
-                  <CurveChart spec={specs.get(each.id)!} height={132} isSmall sync="curves" />
+                  <CurveChart spec={specs.get(each.id)!} height={132} isSmall sync="curves" xRange={zoom} />
                 </button>
               ))}
             </div>
@@ -315,19 +315,18 @@ function LossSplit({ curves, titles, xRange, onSpeed, onZoom }: {
     return curves.map((curve) => {
       const revision = curve.simulation.lubricant_revision ?? '';
       const variant = variantOf(curve.simulation, simulations);
-      const spec = splitSpecOf(curve, titleOf(titles, revision) + (variant && `, ${variant}`), fluids.indexOf(revision), greatest,
+      return splitSpecOf(curve, titleOf(titles, revision) + (variant && `, ${variant}`), fluids.indexOf(revision), greatest,
         bandsOf([curve], (each, row) => each.columns['contact_loss']![row] === 1),
         bandsOf([curve], (each, row) => each.warnings[row]!.some((warning) => warningOf(warning.code ?? '').level === 'outside')));
-      return xRange ? { ...spec, xRange } : spec;
     });
-  }, [curves, titles, xRange, inUnits]);
+  }, [curves, titles, inUnits]);
   return (
     <>
       <div class="histories">
         {specs.map((spec) => (
           <figure key={spec.title} class="figure">
             <figcaption>{spec.title}</figcaption>
-            <CurveChart spec={spec} height={220} sync="curves" onSpeed={onSpeed} onZoom={onZoom} />
+            <CurveChart spec={spec} height={220} sync="curves" xRange={xRange} onSpeed={onSpeed} onZoom={onZoom} />
           </figure>
         ))}
       </div>
@@ -339,8 +338,8 @@ function LossSplit({ curves, titles, xRange, onSpeed, onZoom }: {
 const VERDICTS: Record<string, string> = { LOWER: 'loses less', HIGHER: 'loses more', CANNOT_BE_TOLD_APART: 'cannot be told apart' };
 
 /** Differences from the reference fluid with their intervals; hollow where two cannot be told apart. */
-function Differences({ spec, groups, titles, fluids, reference, onSpeed, onZoom }: {
-  spec: Spec; groups: ComparedGroup[]; titles: Map<string, string>; fluids: string[]; reference: string;
+function Differences({ spec, groups, titles, fluids, reference, xRange, onSpeed, onZoom }: {
+  spec: Spec; groups: ComparedGroup[]; titles: Map<string, string>; fluids: string[]; reference: string; xRange: [number, number] | undefined;
   onSpeed: (speed: number) => void; onZoom: (range: [number, number] | null) => void;
 }) {
   const wide = groups.filter((each) => each.curves.length > 1);
@@ -374,7 +373,7 @@ function Differences({ spec, groups, titles, fluids, reference, onSpeed, onZoom 
           );
         }))}
       </ul>
-      <CurveChart spec={spec} height={180} sync="curves" onSpeed={onSpeed} onZoom={onZoom} />
+      <CurveChart spec={spec} height={180} sync="curves" xRange={xRange} onSpeed={onSpeed} onZoom={onZoom} />
       <p class="small">Means over the speeds; hollow where the two cannot be told apart. Each speed is solved alone here; a curve follows its branch.</p>
     </figure>
   );
