@@ -75,9 +75,10 @@ export function valueOf(lubricant: Lubricant, field: Field): number | undefined 
 export const constraintOf = (field: Field, constraints: Constraint[] | undefined): Constraint | undefined =>
   constraints?.find((each) => each.message === field.message && each.field === field.field);
 
-const UNITS: Record<string, string> = { 'mm2/s': 'mm²/s', 'kg/m3': 'kg/m³', 'kg/(m3 K)': 'kg/(m³ K)' };
-export const unitOf = (field: Field, constraint: Constraint | undefined): Unit =>
-  field.unit ?? plain(UNITS[constraint?.unit ?? ''] ?? constraint?.unit ?? '');
+const UNITS: Record<string, string> = { 'mm2/s': 'mm²/s', 'kg/m3': 'kg/m³', 'kg/(m3 K)': 'kg/(m³ K)', '1/m2': '1/m²' };
+/** A unit of the service with raised digits. */
+export const symbolOf = (unit: string): string => UNITS[unit] ?? unit;
+export const unitOf = (field: Field, constraint: Constraint | undefined): Unit => field.unit ?? plain(symbolOf(constraint?.unit ?? ''));
 
 const LEAST_POWER = 1e6; // from which on a limit is written as a power
 

@@ -166,3 +166,85 @@ test('a click on a dot opens its candidate, and the rows can be taken away', asy
   assert.equal(printed.trim().split('\n').length, 181);
   assert.deepEqual(page.complaints, []);
 });
+
+/** The form of a new campaign, without a table that another test left in it. */
+async function openForm() {
+  await page.evaluate(() => sessionStorage.clear());
+  await page.goto(`${server.address}/campaigns/new`);
+}
+
+const candidatesFile = (name, text) => ({ name, mimeType: 'text/csv', buffer: Buffer.from(text) });
+
+test('a dropped table becomes a campaign whose points and time the service counts', async () => {
+  await page.goto(`${server.address}/campaigns`);
+  await page.getByRole('link', { name: 'New campaign' }).click();
+  await page.locator('.drop input').setInputFiles(candidatesFile('friction modifiers.csv',
+    'name;alpha* [1/GPa];asperity_friction_coefficient;additive;cost_euros_per_kilogram\nA-1;14,5;0,11;A;4\nA-2;;0,1;A;4,5\nB-1;16;0,08;"B; new";5\n'));
+  await page.getByText('3 candidates at 12 conditions are 36 points').waitFor();
+  assert.deepEqual(await foreignNumbers(page), []);
+  await page.getByLabel('Speeds, km/h').fill('30, 70');
+  await page.getByLabel('Speeds, km/h').press('Tab');
+  await page.getByText('3 candidates at 4 conditions are 12 points').waitFor();
+  await page.getByLabel('Film, pressure and temperature of the contacts').check();
+  await page.getByLabel('Sensitivity by Asperity friction coefficient').check();
+  await page.waitForURL(/speeds=30,70&contact=1&by=surface.asperity_friction_coefficient/);
+  await page.reload();
+  await page.getByText('3 candidates at 4 conditions are 12 points').waitFor();
+  await page.getByRole('button', { name: 'Create the campaign' }).click();
+  await page.getByText('12 of 12 rows are computed').waitFor();
+  const name = new URL(page.url()).pathname.slice(1);
+  const campaign = await server.call('GET', `/v1/${name}?view=CAMPAIGN_VIEW_FULL`);
+  const base = await server.call('GET', '/v1/lubricants/paper-fluid-1');
+  assert.equal(campaign.display_name, 'friction modifiers');
+  assert.deepEqual(campaign.candidate_columns, [
+    { path: 'lubricant.pressure_viscosity_coefficient_per_pascal', values: [1.45e-8, base.pressure_viscosity_coefficient_per_pascal, 1.6e-8] },
+    { path: 'surface.asperity_friction_coefficient', values: [0.11, 0.1, 0.08] },
+  ]);
+  assert.deepEqual(campaign.candidate_attributes.map(({ name, texts, values }) => [name, texts, values]), [
+    ['name', ['A-1', 'A-2', 'B-1'], []], ['additive', ['A', 'A', 'B; new'], []], ['cost_euros_per_kilogram', [], [4, 4.5, 5]],
+  ]);
+  assert.equal(campaign.contact_figures, true);
+  await page.getByRole('button', { name: 'B-1', exact: true }).waitFor();
+});
+
+test('a mistake in a table of candidates is named in its cell, whoever finds it', async () => {
+  await openForm();
+  await page.getByLabel('Or paste it from a spreadsheet').fill('name\trelaxation_time\tdensity_slope\tweight\nA\t2\tx\t1\nB\t3\t-0.6\t2\nC\t4\n');
+  const cell = (row, column) => page.getByRole('region', { name: 'Table of candidates' }).locator('tbody tr', { has: page.getByRole('rowheader', { name: row, exact: true }) }).locator('td').nth(column);
+  await cell('2', 2).getByText('"x" is not a number').waitFor();
+  await page.getByText('has 2 cells; the header has 4').waitFor();
+  await page.locator('th', { hasText: 'relaxation_time' }).getByText('choose its unit').waitFor();
+  assert.ok(await page.getByRole('button', { name: 'Create the campaign' }).isDisabled());
+  await page.getByRole('button', { name: 'Take the table away' }).click();
+  await page.getByLabel('Or paste it from a spreadsheet').fill('name\trelaxation_time\tweight\nA\t2\t1\nB\t30000000\t200\n');
+  await page.getByLabel('Unit of relaxation_time').selectOption('µs');
+  await cell('3', 1).getByText(/30 s; allowed: 0 to 10 s/).waitFor();
+  await page.getByLabel('What relaxation_time is').selectOption('rides along');
+  await page.getByText('No column is a parameter or of a data sheet').waitFor();
+  await page.getByLabel('What weight is').selectOption('Thermal conductivity');
+  await cell('3', 2).getByText(/allowed: /).waitFor();
+  await page.getByLabel('Speeds, km/h').fill('30, 7000');
+  await page.getByLabel('Speeds, km/h').press('Tab');
+  await page.locator('.panel .problem', { hasText: 'allowed' }).waitFor();
+  assert.deepEqual(page.complaints, []);
+});
+
+test('candidates of data sheets have the parameters that the service gives oils with these', async () => {
+  const expected = await server.newOil('sheet', 'Sheet', 103, 15.1, 868);
+  await openForm();
+  await page.getByLabel('Base fluid').selectOption('Lubricant 2');
+  await page.getByLabel('Or paste it from a spreadsheet').fill('name\tKV40\tKV100\tdensity\nA\t103\t15.1\t868\nB\t9.5\t140\t862\n');
+  await page.getByText('140 mm2/s at 100 C must be below that at 40 C').waitFor();
+  await page.getByRole('button', { name: 'Take the table away' }).click();
+  await page.getByLabel('Or paste it from a spreadsheet').fill('name\tKV40\tKV100\tdensity\nA\t103\t15.1\t868\nB\t95\t14.1\t862\n');
+  await page.getByText('2 candidates at 12 conditions are 24 points').waitFor();
+  await page.getByRole('button', { name: 'Create the campaign' }).click();
+  await page.getByText('24 of 24 rows are computed').waitFor();
+  const campaign = await server.call('GET', `/v1${new URL(page.url()).pathname}?view=CAMPAIGN_VIEW_FULL`);
+  const oil = await server.call('GET', `/v1/${expected.name}`);
+  assert.ok(campaign.candidate_columns.length > 5);
+  const { base_oil_class } = await server.call('GET', '/v1/lubricants/paper-fluid-2');
+  assert.equal(base_oil_class, oil.base_oil_class);
+  for (const { path, values } of campaign.candidate_columns) assert.equal(values[0], oil[path.replace('lubricant.', '')], path);
+  assert.deepEqual(page.complaints, []);
+});

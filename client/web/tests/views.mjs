@@ -57,7 +57,7 @@ after(async () => {
   await server?.remove();
 });
 
-/** Name, address, and what is there once the view is complete. */
+/** Name, address, what is there once the view is complete, and what is clicked then. */
 const VIEWS = [
   ['home', '/', '.runs li'],
   ['curves', '/curves?r=1,2,3', '.multiple canvas'],
@@ -79,6 +79,8 @@ const VIEWS = [
   ['point', '/point/4', '.pair canvas'],
   ['point-smooth', '/point/7', '.bars'],
   ['campaigns', '/campaigns', 'tbody tr'],
+  ['campaign-new', '/campaigns/new', '.drop'],
+  ['campaign-new-table', '/campaigns/new?contact=1', '.drop', 'Show an example', '.estimate strong'],
   ['campaign-ranking', '/campaigns/1?du=3', '.ranking tbody tr'],
   ['campaign-pareto', '/campaigns/1?view=pareto', '.scatter canvas'],
   ['campaign-effects', '/campaigns/1?view=effects', '.bars'],
@@ -101,9 +103,13 @@ export function testViews(colorScheme) {
       await page.screenshot({ path: `${FOLDER}/sign-in-${colorScheme}-${width}.png` });
       await signIn(page, server.token);
       const problems = [];
-      for (const [name, path, mark] of VIEWS) {
+      for (const [name, path, mark, words, next] of VIEWS) {
         await page.goto(server.address + path);
         await page.locator(mark).first().waitFor();
+        if (words) {
+          await page.getByRole('button', { name: words }).click();
+          await page.locator(next).first().waitFor();
+        }
         await page.waitForFunction(() => !document.querySelector('.stale'));
         await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
         await page.screenshot({ path: `${FOLDER}/${name}-${colorScheme}-${width}.png`, fullPage: true });

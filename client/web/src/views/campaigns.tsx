@@ -18,6 +18,7 @@ import { address, place, set } from '../router';
 import { useStore } from '../store';
 import { readNumber, shown, sumpText, units, written } from '../units';
 import { Effects, Pareto, Promote, Ranking } from './campaign_decisions';
+import { NewCampaign } from './campaign_new';
 
 const PAGE = 100;
 const MOST_STREAMS = 3; // a browser opens six connections to a server
@@ -30,6 +31,7 @@ const ENDED = ['SUCCEEDED', 'FAILED', 'CANCELLED'];
 export function Campaigns() {
   const { path } = useStore(place);
   const id = path.split('/')[2];
+  if (id === 'new') return <NewCampaign />;
   return id ? <CampaignPage key={id} name={`campaigns/${id}`} /> : <CampaignList />;
 }
 
@@ -95,12 +97,15 @@ function CampaignList() {
   }, [list.value]);
   return (
     <>
-      <h1>Campaigns</h1>
+      <div class="heading">
+        <h1>Campaigns</h1>
+        {session.value?.scope !== 'read' && <div class="actions"><a class="button primary" href={address('/campaigns/new')}>New campaign</a></div>}
+      </div>
       {list.error !== undefined && <Failure error={list.error} onRetry={list.reload} />}
       {problem !== null && <Failure error={problem} />}
       {campaigns?.length === 0 && (
         <section class="empty">
-          <p>A campaign screens thousands of variants of an oil. The command line begins one from a table of candidates:</p>
+          <p>A campaign screens thousands of variants of an oil. <a href={address('/campaigns/new')}>Drop a table of candidates</a>, or begin one with the command line:</p>
           <pre class="command">tribodyn screen candidates.csv --like my-oil --speeds 20,40,60 --sumps 40,90</pre>
         </section>
       )}
