@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "core/decisions/factor_effects.h"
@@ -460,14 +461,25 @@ Outcome<v1::FindParetoCandidatesResponse> find_pareto_candidates(
   const std::vector<std::size_t> front = pareto_front(of_first, of_second);
   out.set_total_size(static_cast<int>(front.size()));
   out.set_beaten(static_cast<int>(selection.candidates.size() - front.size()));
-  for (const std::size_t position : front) {
-    if (out.candidates_size() == kMaximumFrontAnswer) break;
-    const std::size_t candidate = selection.candidates[position];
-    v1::ParetoCandidate& each = *out.add_candidates();
+  const auto set_candidate = [&](std::size_t candidate, v1::ParetoCandidate& each) {
     each.set_candidate(static_cast<int>(candidate));
     each.set_label(table.label(candidate));
     each.set_first_value(first[candidate]);
     each.set_second_value(second[candidate]);
+  };
+  std::set<std::size_t> members;
+  for (const std::size_t position : front) {
+    const std::size_t candidate = selection.candidates[position];
+    members.insert(candidate);
+    if (out.candidates_size() < kMaximumFrontAnswer) {
+      set_candidate(candidate, *out.add_candidates());
+    }
+  }
+  if (request.beaten_count() == 0) return out;
+  for (const std::size_t candidate :
+       ordered(selection.candidates, first, request.first().wants_most())) {
+    if (out.beaten_candidates_size() == request.beaten_count()) break;
+    if (!members.contains(candidate)) set_candidate(candidate, *out.add_beaten_candidates());
   }
   return out;
 }

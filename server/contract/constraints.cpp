@@ -270,6 +270,7 @@ constexpr Constraint kConstraints[] = {
     {"RankCandidatesRequest", "confidence", "", 0.5, 0.9999, "probability",
      "below one half no candidate is worse", Zero::kUnset},
     {"FindParetoCandidatesRequest", "condition_weights", "", 1e-9, 1e9, "mean over conditions", ""},
+    {"FindParetoCandidatesRequest", "beaten_count", "", 1, 10000, "answer limit", "", Zero::kUnset},
     {"EstimateCandidateEffectsRequest", "condition_weights", "", 1e-9, 1e9, "mean over conditions",
      ""},
     {"EstimateCandidateEffectsRequest", "coverage", "", 0.5, 0.9999, "probability", "",

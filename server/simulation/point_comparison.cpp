@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/numerics/square.h"
+#include "core/study/operating_target.h"
 #include "core/uncertainty/normal_draws.h"
 #include "core/uncertainty/spread.h"
 #include "core/version.h"
@@ -276,6 +277,17 @@ void add_ranking(const std::vector<ComputedFluid>& fluids, v1::ComparePointsResp
   }
 }
 
+/// Returns the mean speed of the pinion at each condition [rad/s].
+std::vector<double> pinion_speeds(const Scene& scene, const PointEvaluation& evaluation) {
+  std::vector<double> out(static_cast<std::size_t>(evaluation.conditions));
+  for (const PointEvaluation::Group& group : evaluation.groups) {
+    for (const auto& [position, condition] : group.conditions) {
+      out[static_cast<std::size_t>(position)] = target_of(scene, condition).mean_pinion_speed;
+    }
+  }
+  return out;
+}
+
 /// Returns the request for the points of one lubricant.
 v1::EvaluatePointsRequest points_of(const v1::ComparePointsRequest& request,
                                     const std::string& lubricant) {
@@ -390,6 +402,8 @@ v1::ComparePointsResponse compare_points(const PointComparison& comparison,
         lubricant_message(fluids[i], fluids.front(), comparison.fluids[i].errors);
   }
   add_ranking(fluids, out);
+  const std::vector<double> speeds = pinion_speeds(physical, comparison.fluids.front().evaluation);
+  *out.mutable_mean_pinion_speed_radians_per_second() = {speeds.begin(), speeds.end()};
   out.set_draws(comparison.draws);
   out.set_estimate_correlation(comparison.estimate_correlation);
   for (const std::string& each : comparison.scene_errors.without_uncertainty) {

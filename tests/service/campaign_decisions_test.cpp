@@ -298,6 +298,43 @@ TEST_F(CandidateDecisions, NoOtherCandidateBeatsOneOfTheFrontAndOneBeatsEachOfTh
   EXPECT_EQ(found, expected);
   EXPECT_EQ(out.message().beaten(), kCandidates - static_cast<int>(expected.size()));
   EXPECT_EQ(out.message().total_size(), static_cast<int>(expected.size()));
+  EXPECT_EQ(out.message().beaten_candidates_size(), 0);
+}
+
+TEST_F(CandidateDecisions, TheBestBeatenCandidatesComeWithTheFrontIfTheyAreRequested) {
+  const v1::Campaign campaign = table_of_candidates();
+  v1::FindParetoCandidatesRequest request;
+  request.set_name(create(campaign));
+  request.mutable_second()->mutable_figure()->set_column("film_ratio_mean");
+  request.mutable_second()->set_wants_most(true);
+  request.set_beaten_count(10000);
+  const auto all = find_pareto_candidates(application_, request);
+  ASSERT_TRUE(all.ok()) << complaints(all.error());
+  ASSERT_GT(all.message().beaten(), 3);
+  ASSERT_EQ(all.message().beaten_candidates_size(), all.message().beaten());
+  const auto points = points_of(campaign);
+  const std::vector<double> losses = means(points.inefficiency_energy_mean_percent());
+  const std::vector<double> films = means(points.film_ratio_mean());
+  std::set<int> found;
+  for (const v1::ParetoCandidate& each : all.message().candidates()) found.insert(each.candidate());
+  double before = 0;
+  for (const v1::ParetoCandidate& each : all.message().beaten_candidates()) {
+    EXPECT_TRUE(found.insert(each.candidate()).second) << each.candidate();
+    EXPECT_GE(each.first_value(), before);
+    before = each.first_value();
+    EXPECT_NEAR(each.first_value(), losses[static_cast<std::size_t>(each.candidate())], 1e-12);
+    EXPECT_NEAR(each.second_value(), films[static_cast<std::size_t>(each.candidate())], 1e-12);
+  }
+  EXPECT_EQ(static_cast<int>(found.size()), kCandidates);
+  request.set_beaten_count(2);
+  const auto two = find_pareto_candidates(application_, request);
+  ASSERT_TRUE(two.ok()) << complaints(two.error());
+  ASSERT_EQ(two.message().beaten_candidates_size(), 2);
+  EXPECT_EQ(two.message().beaten(), all.message().beaten());
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(two.message().beaten_candidates(i).candidate(),
+              all.message().beaten_candidates(i).candidate());
+  }
 }
 
 TEST_F(CandidateDecisions, EffectsOfALinearFigureAreItsCoefficients) {

@@ -178,6 +178,20 @@ TEST(ComparePoints, TheMeanWeighsItsConditions) {
               1e-12);
 }
 
+TEST(ComparePoints, StatesTheMeanSpeedOfThePinionAtEachConditionInTheirOrder) {
+  Fluids fluids;
+  fluids.add("lubricants/a", fluid_with_alpha());
+  auto request = request_at({100, 40, 70}, {"lubricants/a"});
+  request.mutable_conditions(0)->set_sump_temperature_celsius(90);
+  const auto out = compare(request, fluids);
+  ASSERT_EQ(out.mean_pinion_speed_radians_per_second_size(), 3);
+  for (int k = 0; k < 3; ++k) {
+    const double speed = request.conditions(k).speed_kilometres_per_hour();
+    EXPECT_NEAR(out.mean_pinion_speed_radians_per_second(k),
+                simulated(fluid_with_alpha(), speed).mean_pinion_speed, 1e-9);
+  }
+}
+
 TEST(ComparePoints, NamesTheInputsThatCountAsExact) {
   const auto out = compare(request_at({50}, {"lubricants/paper-fluid-1"}), {});
   const v1::ComparedLubricant& a = out.lubricants(0);

@@ -1,7 +1,8 @@
-import type { ComparedLubricant, ComparedPoint, ComparePointsRequest, ExplainPointsRequest, PointCondition, UncertainFigure } from './api/types';
+import type { ComparedLubricant, ComparedPoint, ComparePointsRequest, ComparePointsResponse, ExplainPointsRequest, PointCondition, UncertainFigure } from './api/types';
 import type { Line, Spec } from './charts/spec';
 import { finite } from './components/num';
-import { metres, plain, shown, watts, type Unit } from './units';
+import { rounded } from './format';
+import { isInRpm, metres, plain, RPM, scaled, shown, watts, type Unit } from './units';
 import { PARAMETERS } from './lubricant_fields';
 
 /** What the form of a comparison holds. */
@@ -132,10 +133,21 @@ export function intervalLine(label: string, series: number, speeds: number[], fi
   };
 }
 
-/** Figures of lubricants over speeds. */
-export function figuresSpec(lubricants: ComparedLubricant[], titles: string[], speeds: number[], quantity: ComparedQuantity): Spec {
+/** The unit of the axis of speeds: those of the pinion, which the service answers, are proportional to those of the vehicle. */
+export function comparedSpeedUnit(answer: ComparePointsResponse | null | undefined, speeds: number[]): Unit {
+  const pinion = answer?.mean_pinion_speed_radians_per_second?.[0];
+  return isInRpm() && pinion !== undefined ? scaled(RPM.symbol, (RPM.factor * pinion) / speeds[0]!) : plain('km/h');
+}
+
+export const speedLabelOf = (unit: Unit): string => (unit.symbol === RPM.symbol ? 'Mean speed of the pinion, rpm' : 'Vehicle speed, km/h');
+
+/** A speed in words: "60 km/h" or "1635 rpm". */
+export const speedText = (speed: number, unit: Unit): string => (unit.symbol === RPM.symbol ? `${rounded(shown(speed, unit), 1)} rpm` : `${speed} km/h`);
+
+/** Figures of lubricants over places of the axis. */
+export function figuresSpec(lubricants: ComparedLubricant[], titles: string[], speeds: number[], quantity: ComparedQuantity, xLabel: string): Spec {
   return {
-    title: `${quantity.label}, ${quantity.unit.symbol}`, xLabel: 'Vehicle speed, km/h', yLabel: quantity.unit.symbol,
+    title: `${quantity.label}, ${quantity.unit.symbol}`, xLabel, yLabel: quantity.unit.symbol,
     lines: lubricants.map((lubricant, k) => {
       const points = lubricant.points ?? [];
       return intervalLine(titles[k]!, k, speeds, points.map((point) => (point.refusal_reason ? undefined : quantity.figure(point))),
@@ -145,10 +157,10 @@ export function figuresSpec(lubricants: ComparedLubricant[], titles: string[], s
   };
 }
 
-/** Differences from the first lubricant over speeds: hollow where the two cannot be told apart. */
-export function differenceSpec(lubricants: ComparedLubricant[], titles: string[], speeds: number[], series: number[]): Spec {
+/** Differences from the first lubricant over places of the axis: hollow where the two cannot be told apart. */
+export function differenceSpec(lubricants: ComparedLubricant[], titles: string[], speeds: number[], series: number[], xLabel: string): Spec {
   return {
-    title: `Difference from ${titles[0]}, percentage points`, xLabel: 'Vehicle speed, km/h', yLabel: '% points',
+    title: `Difference from ${titles[0]}, percentage points`, xLabel, yLabel: '% points',
     lines: lubricants.slice(1).map((lubricant, k) => {
       const differences = lubricant.differences ?? [];
       return intervalLine(titles[k + 1]!, series[k + 1]!, speeds, differences.map((each) => each.difference_percent), POINTS,

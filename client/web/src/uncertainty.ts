@@ -118,7 +118,7 @@ export function differencesOf(groups: ComparedGroup[] | undefined, fluids: strin
     const names = revisions.map((each) => shortTitle(titles.get(idOf(each)) ?? revisionIdOf(each)));
     const variant = variantOf(simulations[k]!, simulations);
     const spec = differenceSpec(group.answer.lubricants ?? [], names, axisOf(group.curves[0]!),
-      revisions.map((each) => fluids.indexOf(each)));
+      revisions.map((each) => fluids.indexOf(each)), axisLabelOf(group.curves[0]));
     spec.lines.forEach((line) => {
       line.variant = k;
       if (variant !== '') line.label += `, ${variant}`;
@@ -127,7 +127,7 @@ export function differencesOf(groups: ComparedGroup[] | undefined, fluids: strin
     });
     return spec;
   });
-  return { ...specs[0]!, xLabel: axisLabelOf(wide[0]!.curves[0]), lines: specs.flatMap((each) => each.lines) };
+  return { ...specs[0]!, lines: specs.flatMap((each) => each.lines) };
 }
 
 /** Adds the intervals of the service to all lines of a quantity. */

@@ -84,6 +84,32 @@ test('a click on a speed explains the difference there, and its commands and tab
   assert.deepEqual(page.complaints, []);
 });
 
+test('a comparison has its speeds in rpm of the pinion and the torque there if the reader wants so', async () => {
+  await page.goto(`${server.address}/compare?a=my-oil&b=paper-fluid-3&from=40&to=80&step=20&at=60`);
+  await page.locator('.bars').first().waitFor();
+  await page.getByText('Units', { exact: true }).click();
+  await page.getByLabel('Unit: Speed of curves').selectOption('rpm');
+  await page.getByText('Units', { exact: true }).click();
+  const answer = await server.call('POST', '/v1/points:compare', {
+    lubricants: ['lubricants/my-oil', 'lubricants/paper-fluid-3'], conditions: [40, 60, 80].map((speed_kilometres_per_hour) => ({ speed_kilometres_per_hour })),
+  });
+  const rpm = answer.mean_pinion_speed_radians_per_second.map((each) => ((30 / Math.PI) * each).toFixed(0));
+  await page.getByText('Mean speed of the pinion, rpm').waitFor();
+  assert.deepEqual(await page.locator('.reasons select option').allTextContents(), [...rpm.map((each) => `${each} rpm`), 'the mean of all speeds']);
+  const torque = answer.lubricants[0].points[1].pinion_torque_newton_metres.value;
+  const shown = Number(await page.locator('.reasons [data-unit="N m"]').first().textContent());
+  assert.ok(Math.abs(shown - torque) < 0.01 * torque, `${shown} N m, the service: ${torque}`);
+  const plot = await page.locator('.u-over').first().boundingBox();
+  await page.mouse.click(plot.x + plot.width - 4, plot.y + 40);
+  await page.waitForURL(/at=80/);
+  await page.getByText('Every speed', { exact: true }).click();
+  assert.deepEqual(await page.getByRole('region', { name: 'Every speed' }).locator('tbody tr td:first-child').allTextContents(), rpm);
+  assert.deepEqual(await foreignNumbers(page), []);
+  await page.evaluate(() => localStorage.removeItem('units'));
+  await page.reload();
+  await page.getByText('Vehicle speed, km/h').waitFor();
+});
+
 test('a stranger enters an oil, compares, explains, finds the worst speed and hands over a link, by what the pages say', async () => {
   await page.goto(server.address);
   await page.getByRole('link', { name: 'Enter an oil' }).click();

@@ -1,8 +1,8 @@
 import { useMemo, useState } from 'preact/hooks';
 import { ApiError, change, session, url } from '../api/client';
 import type {
-  Campaign, CandidateConstraint, CandidateFigure, CandidateObjective, EstimateCandidateEffectsResponse, FindParetoCandidatesResponse,
-  PromoteCandidateResponse, RankCandidatesResponse, RankedCandidate,
+  Campaign, CandidateConstraint, CandidateObjective, EstimateCandidateEffectsResponse, FindParetoCandidatesResponse,
+  ParetoCandidate, PromoteCandidateResponse, RankCandidatesResponse, RankedCandidate,
 } from '../api/types';
 import type { Column, Range, Rows } from '../campaign';
 import { Scatter, type Dot } from '../charts/scatter';
@@ -17,7 +17,7 @@ import { useStore } from '../store';
 import { shown, units, type Unit } from '../units';
 
 const RANKED = 100; // candidates of a ranking that are asked for
-const MOST_RANKED = 1000; // of the service
+const MOST_BEATEN = 5000; // candidates that are drawn behind a front
 
 export interface DecisionProps {
   campaign: Campaign;
@@ -185,34 +185,28 @@ export function Pareto({ campaign, rows, ranges, version, chosen, onChoose }: De
   const usual = columns.find((each) => each.kind === 'candidate')?.name ?? columns.find((each) => each.name === 'film_ratio_minimum')?.name ?? 'dynamic_transmission_error_maximum_metres';
   const second = statedOf(query.get('other'), columns, usual);
   const constraints = constraintsOf(ranges);
-  const front = useAnswer<FindParetoCandidatesResponse>(`${campaign.name}:findPareto`, first && second && { first: first.objective, second: second.objective, constraints }, version);
-  // All candidates with both figures: a constraint that excludes none answers the second one.
-  const all = useAnswer<RankCandidatesResponse>(`${campaign.name}:rank`, first && second && {
-    objective: first.objective, count: MOST_RANKED, ignore_stated_uncertainties: true,
-    constraints: [{ figure: second.objective.figure as CandidateFigure, minimum: -1e300 }, ...constraints],
-  }, version);
+  const front = useAnswer<FindParetoCandidatesResponse>(`${campaign.name}:findPareto`, first && second && { first: first.objective, second: second.objective, constraints, beaten_count: MOST_BEATEN }, version);
   const dots = useMemo<Dot[]>(() => {
     if (!first || !second) return [];
-    const dot = (candidate: number, y: number | undefined, x: number | undefined, series: number): Dot[] =>
-      (finite(y) === null || finite(x) === null ? [] : [{ key: candidate, x: shown(x!, second.column.unit), y: shown(y!, first.column.unit), series }]);
-    const members = new Set((front.value?.candidates ?? []).map((each) => each.candidate ?? 0));
+    const dot = (each: ParetoCandidate, series: number): Dot[] =>
+      (finite(each.first_value) === null || finite(each.second_value) === null ? []
+        : [{ key: each.candidate ?? 0, x: shown(each.second_value!, second.column.unit), y: shown(each.first_value!, first.column.unit), series }]);
     return [
-      ...(all.value?.candidates ?? []).filter((each) => !members.has(each.candidate ?? 0)).flatMap((each) => dot(each.candidate ?? 0, each.value, each.constraint_values?.[0], -1)),
-      ...(front.value?.candidates ?? []).flatMap((each) => dot(each.candidate ?? 0, each.first_value, each.second_value, 0)),
+      ...(front.value?.beaten_candidates ?? []).flatMap((each) => dot(each, -1)),
+      ...(front.value?.candidates ?? []).flatMap((each) => dot(each, 0)),
     ];
-  }, [front.value, all.value, inUnits]);
+  }, [front.value, inUnits]);
   if (!first || !second) return <p class="muted">No rows are computed yet.</p>;
   const members = front.value?.candidates ?? [];
   return (
-    <section aria-label="Pareto front" class={front.isStale || all.isStale ? 'stale' : ''}>
+    <section aria-label="Pareto front" class={front.isStale ? 'stale' : ''}>
       <ObjectiveChoice words="Good is" setting="goal" stated={first} columns={columns} />
       <ObjectiveChoice words="and" setting="other" stated={second} columns={columns} />
       {front.error !== undefined && <Failure error={front.error} onRetry={front.reload} />}
-      {all.error !== undefined && <Failure error={all.error} onRetry={all.reload} />}
       {front.value && <Counts of={front.value} words={[[front.value.total_size, 'candidates are beaten by none in both'], [front.value.beaten, 'are beaten']]} />}
       <Scatter dots={dots} xLabel={withUnit(second.column)} yLabel={withUnit(first.column)} height={matchMedia('(max-width: 640px)').matches ? 320 : 420}
         chosen={chosen} onChoose={onChoose} words={(key) => `candidate ${key}`} />
-      {(all.value?.ranked ?? 0) > MOST_RANKED && <p class="small">The {MOST_RANKED} best of <span data-value={all.value!.ranked}>{all.value!.ranked}</span> candidates are drawn, and the whole front.</p>}
+      {(front.value?.beaten ?? 0) > MOST_BEATEN && <p class="small">The {MOST_BEATEN} best of <span data-value={front.value!.beaten}>{front.value!.beaten}</span> beaten candidates are drawn, and the front.</p>}
       <details open>
         <summary>The front</summary>
         <div class="scroll rows" tabIndex={0} role="region" aria-label="The front">

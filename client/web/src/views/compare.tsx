@@ -1,3 +1,4 @@
+import type { ComponentChildren } from 'preact';
 import { useMemo, useState } from 'preact/hooks';
 import { ApiError, get, url } from '../api/client';
 import type {
@@ -12,12 +13,12 @@ import { Swatch } from '../components/swatch';
 import { Validity } from '../components/validity';
 import { csvOf, TakeAway } from '../components/take_away';
 import {
-  COMPARED, compareBodyOf, compareCommandsOf, compareQueryOf, compareRequestOf, differenceSpec, explainBodyOf, figuresSpec, GROUPS,
-  inputWords, POINTS, speedsOf, type CompareRequest,
+  COMPARED, compareBodyOf, compareCommandsOf, comparedSpeedUnit, compareQueryOf, compareRequestOf, differenceSpec, explainBodyOf, figuresSpec, GROUPS,
+  inputWords, POINTS, speedLabelOf, speedsOf, speedText, type CompareRequest,
 } from '../comparison';
 import { shortTitle } from '../curve';
 import { idOf, revisionIdOf } from '../format';
-import { celsius, plain, readNumber, shown, sumpText, units, watts, written, type Unit } from '../units';
+import { celsius, plain, readNumber, RPM, shown, sumpText, units, watts, written, type Unit } from '../units';
 import { ALL_FIELDS, constraintOf, unitOf, valueOf, type Field } from '../lubricant_fields';
 import { PROVENANCE } from '../provenance';
 import { OPTIONS } from '../request';
@@ -52,8 +53,13 @@ export function Compare() {
     lines.forEach((each, k) => (names[k] = revisionIdOf(each.lubricant_revision)));
   }
   const quantity = COMPARED.find((each) => each.id === query.get('y')) ?? COMPARED[0]!;
+  const speedUnit = comparedSpeedUnit(answer.value, speeds); // addresses have km/h
+  const axis = speeds.map((speed) => shown(speed, speedUnit));
+  const xLabel = speedLabelOf(speedUnit);
+  const onPick = (place: number) => set({ at: String(nearest(speeds, place / speedUnit.factor)) });
+  const torque = at === null || speedUnit.symbol === 'km/h' ? undefined : lines[0]?.points?.[speeds.indexOf(at)]?.pinion_torque_newton_metres;
   const specs = useMemo(() => (lines.length === 2
-    ? { figures: figuresSpec(lines, names, speeds, quantity), difference: differenceSpec(lines, names, speeds, [0, 1]) } : null),
+    ? { figures: figuresSpec(lines, names, axis, quantity, xLabel), difference: differenceSpec(lines, names, axis, [0, 1], xLabel) } : null),
   [answer.value, quantity, titles, inUnits]);
   const row = at === null ? -1 : speeds.indexOf(at);
   const other = lines[1];
@@ -86,12 +92,12 @@ export function Compare() {
                 ))}
               </div>
               <figcaption>{specs.figures.title}; bands hold 95&nbsp;%</figcaption>
-              <CurveChart spec={specs.figures} height={240} sync="compare" onPick={(speed) => set({ at: String(speed) })} />
+              <CurveChart spec={specs.figures} height={240} sync="compare" onPick={onPick} />
             </figure>
             <figure class="figure" aria-label="Difference over speed">
               <figcaption>{names[1]} less {names[0]}: mesh inefficiency, percentage points; hollow where the two cannot be told apart</figcaption>
-              <CurveChart spec={specs.difference} height={190} sync="compare" onPick={(speed) => set({ at: String(speed) })} />
-              <p class="axis-title">Vehicle speed, km/h</p>
+              <CurveChart spec={specs.difference} height={190} sync="compare" onPick={onPick} />
+              <p class="axis-title">{xLabel}</p>
             </figure>
             <section class="reasons" aria-labelledby="why">
               <div class="heading">
@@ -99,12 +105,14 @@ export function Compare() {
                 <label class="inline">
                   at
                   <select value={at === null ? 'mean' : String(at)} onChange={(event) => set({ at: event.currentTarget.value })}>
-                    {speeds.map((speed) => <option key={speed} value={speed}>{speed} km/h</option>)}
+                    {speeds.map((speed) => <option key={speed} value={speed}>{speedText(speed, speedUnit)}</option>)}
                     <option value="mean">the mean of all speeds</option>
                   </select>
                 </label>
               </div>
-              {difference && <Verdict difference={difference} names={names} where={at === null ? 'on the mean of all speeds' : `at ${at} km/h`} />}
+              {difference && <Verdict difference={difference} names={names} where={at === null ? 'on the mean of all speeds' : `at ${speedText(at, speedUnit)}`}>
+                {torque && <>, where the pinion of {names[0]} takes <Num value={torque.value} error={torque.standard_uncertainty || torque.solver_error} unit={plain('N m')} /> N m at {at} km/h</>}
+              </Verdict>}
               {reasons.error !== undefined && <Failure error={reasons.error} onRetry={reasons.reload} />}
               {reasons.value && reasons.error === undefined && (
                 <Reasons explanation={at === null ? reasons.value.mean : reasons.value.points?.[0]} names={names} />
@@ -114,7 +122,7 @@ export function Compare() {
               <li class="note">Draws of the inputs are not compared with the ranges of the laws. <a href={address('/curves', { f: `${request.a},${request.b}`, sump: String(request.sump) })}>The curves of both</a> are.</li>
             </Validity>
             {difference && <MeasureNext difference={difference} names={lines} titles={names} />}
-            <SpeedTable lines={lines} names={names} speeds={speeds} />
+            <SpeedTable lines={lines} names={names} speeds={speeds} pinion={speedUnit.symbol === RPM.symbol ? answer.value!.mean_pinion_speed_radians_per_second : undefined} />
             <Inputs a={request.a} b={request.b} names={names} />
           </>
         )}
@@ -244,12 +252,12 @@ function Headline({ difference, names }: { difference: ComparedDifference | unde
   );
 }
 
-function Verdict({ difference, names, where }: { difference: ComparedDifference; names: string[]; where: string }) {
+function Verdict({ difference, names, where, children }: { difference: ComparedDifference; names: string[]; where: string; children?: ComponentChildren }) {
   const [a, b] = names;
   const words = { LOWER: `${b} loses less`, HIGHER: `${b} loses more`, CANNOT_BE_TOLD_APART: `${a} and ${b} cannot be told apart`, VERDICT_UNSPECIFIED: 'no figure' };
   return (
     <p class="muted">
-      {words[difference.verdict ?? 'VERDICT_UNSPECIFIED']} {where}: {difference.difference_percent && <Interval figure={difference.difference_percent} unit={POINTS} />} percentage
+      {words[difference.verdict ?? 'VERDICT_UNSPECIFIED']} {where}{children}: {difference.difference_percent && <Interval figure={difference.difference_percent} unit={POINTS} />} percentage
       points with 95&nbsp;%; probability that {b} loses less: <Probability value={difference.lower_probability} />.
     </p>
   );
@@ -367,7 +375,7 @@ function MeasureNext({ difference, names, titles }: { difference: ComparedDiffer
   );
 }
 
-function SpeedTable({ lines, names, speeds }: { lines: ComparedLubricant[]; names: string[]; speeds: number[] }) {
+function SpeedTable({ lines, names, speeds, pinion }: { lines: ComparedLubricant[]; names: string[]; speeds: number[]; pinion: number[] | undefined }) {
   const [a, b] = lines;
   const words = { LOWER: `${names[1]} loses less`, HIGHER: `${names[1]} loses more`, CANNOT_BE_TOLD_APART: 'cannot be told apart', VERDICT_UNSPECIFIED: '–' };
   const figure = (line: ComparedLubricant, k: number) => {
@@ -382,7 +390,7 @@ function SpeedTable({ lines, names, speeds }: { lines: ComparedLubricant[]; name
       <div class="scroll" tabIndex={0} role="region" aria-label="Every speed">
         <table>
           <thead>
-            <tr><th class="number">km/h</th><th class="number">{names[0]} <small>%</small></th><th class="number">{names[1]} <small>%</small></th>
+            <tr>{pinion && <th class="number">rpm</th>}<th class="number">km/h</th><th class="number">{names[0]} <small>%</small></th><th class="number">{names[1]} <small>%</small></th>
               <th class="number">Difference <small>% points</small></th><th class="number">95&nbsp;% interval</th><th class="number">P({names[1]} less)</th><th>Verdict</th></tr>
           </thead>
           <tbody>
@@ -390,6 +398,7 @@ function SpeedTable({ lines, names, speeds }: { lines: ComparedLubricant[]; name
               const difference = b!.differences?.[k];
               return (
                 <tr key={speed}>
+                  {pinion && <td class="number"><Num value={pinion[k]} unit={RPM} error={1 / RPM.factor} /></td>}
                   <th scope="row" class="number">{speed}</th>
                   <td class="number">{figure(a!, k)}</td><td class="number">{figure(b!, k)}</td>
                   <td class="number"><Num value={difference?.difference_percent?.value} error={difference?.difference_percent?.standard_uncertainty || difference?.difference_percent?.solver_error} unit={POINTS} isSigned /></td>
