@@ -124,7 +124,8 @@ test('a revoked token leads back to the log-in, and what was entered stays', asy
   assert.deepEqual(cookies.map((each) => [each.httpOnly, each.sameSite, each.value.includes(token)]), [[true, 'Strict', false]]);
   assert.equal(await page.evaluate(() => document.cookie), '');
   await output(TRIBODYND, ['tokens', 'revoke', 'anna', '--database', server.database]);
-  await page.waitForTimeout(1500); // the server reads its tokens once a second
+  const isKnown = async () => (await fetch(`${server.address}/v1/lubricants`, { headers: { Authorization: `Bearer ${token}` } })).ok;
+  while (await isKnown()) await new Promise((done) => setTimeout(done, 50)); // the server reads its tokens once a second
   await page.getByRole('button', { name: 'Run the curve' }).click();
   await page.getByRole('dialog').waitFor();
   await signIn(page, server.token);
