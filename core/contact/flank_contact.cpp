@@ -238,6 +238,9 @@ ContactStatus FlankContactModel::heat(const ContactConditions& k,
 void FlankContactModel::complete(const ContactConditions& k, ContactFigures& figures) const {
   figures.friction_coefficient = figures.friction / k.load;
   figures.specific_sliding = specific_sliding(k);
+  figures.entrainment_speed = std::sqrt(
+      laws::entrainment_speed_squared(laws::square(0.5 * (k.velocity_1_x + k.velocity_2_x)),
+                                      laws::square(0.5 * (k.velocity_1_y + k.velocity_2_y))));
   figures.flash_temperature_rise = 0;
   if (options_.isothermal) return;
   const double slide = std::hypot(k.velocity_1_x - k.velocity_2_x, k.velocity_1_y - k.velocity_2_y);

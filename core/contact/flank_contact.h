@@ -48,12 +48,13 @@ struct ContactFigures {
   double flash_temperature_rise = 0;  ///< (dT_f)_av, eq 39 [K]
   double friction_coefficient = 0;    ///< F_fr / W [-]
   SpecificSliding specific_sliding;
+  double entrainment_speed = 0;  ///< U_eff, eq 17 [m/s]
+  double asperity_load = 0;      ///< W_asp, eq 41 [N]
 };
 
 /// Everything about one contact.
 struct ContactSolution : ContactFigures {
   double film_load = 0;                             ///< W_EHL [N]
-  double asperity_load = 0;                         ///< W_asp, eq 41 [N]
   double contact_area = 0;                          ///< A_EHL = pi a_c b_c [m2]
   double asperity_area = 0;                         ///< A_asp, eq 42 [m2]
   double semi_major_axis = 0;                       ///< a_c, eq 20 [m]
@@ -61,7 +62,6 @@ struct ContactSolution : ContactFigures {
   double entrainment_angle = 0;                     ///< theta, measured from x [rad]
   double entrainment_radius = 0;                    ///< R_e, eq 15 [m]
   double side_leakage_radius = 0;                   ///< R_s, eq 16 [m]
-  double entrainment_speed = 0;                     ///< U_eff, eq 17 [m/s]
   double sliding_speed = 0;                         ///< V_s [m/s]
   double inlet_viscosity = 0;                       ///< eta_0(T_in), eq 34 [Pa s]
   double inlet_pressure_viscosity_coefficient = 0;  ///< alpha*(T_in), eq 33 [1/Pa]
@@ -97,8 +97,8 @@ class FlankContactModel {
   /// Any finite input gives a finite answer (but for the infinities documented above) or a refusal.
   ContactSolution solve(const ContactConditions& conditions) const;
 
-  /// Fills in the figures of a contact under load that follow from its friction, temperature, film
-  /// and mean shear stress: those that FlankContactBatch has no columns for.
+  /// Fills in the figures of a contact under load that follow from its conditions, friction,
+  /// temperature, film and mean shear stress: those that FlankContactBatch has no columns for.
   void complete(const ContactConditions& conditions, ContactFigures& figures) const;
 
   double inlet_temperature() const { return constants_.inlet_temperature; }

@@ -89,7 +89,8 @@ void GearPairSystem::solve_contacts(const std::array<ContactConditions, kFlankPa
     if (out.load[k] > 0) geometries_->set(k, c.radius_x, c.radius_y);
   }
   using Column = std::array<double, kFlankPairs>;
-  Column friction, viscous, boundary, temperature, film, ratio, pressure, rate, stress, share;
+  Column friction, viscous, boundary, temperature, film, ratio, pressure, rate, stress, share,
+      asperities;
   std::array<bool, kFlankPairs> at_centre;
   std::array<ContactStatus, kFlankPairs> status;
   FlankContactBatchResults results;
@@ -103,6 +104,7 @@ void GearPairSystem::solve_contacts(const std::array<ContactConditions, kFlankPa
   results.shear_rate = rate.data();
   results.mean_shear_stress = stress.data();
   results.limiting_stress_area_share = share.data();
+  results.asperity_load = asperities.data();
   results.limiting_stress_at_centre = at_centre.data();
   results.status = status.data();
   together_->solve(
@@ -124,6 +126,7 @@ void GearPairSystem::solve_contacts(const std::array<ContactConditions, kFlankPa
     contact.limiting_stress_area_share = share[k];
     contact.limiting_stress_at_centre = at_centre[k];
     contact.mean_shear_stress = stress[k];
+    contact.asperity_load = asperities[k];
     contact_.complete(conditions[k], contact);
   }
 }

@@ -100,7 +100,8 @@ constexpr SolvedRow kSolvedRows[] = {
     {&FlankContactBatchResults::shear_rate, &ContactFigures::shear_rate},
     {&FlankContactBatchResults::mean_shear_stress, &ContactFigures::mean_shear_stress},
     {&FlankContactBatchResults::limiting_stress_area_share,
-     &ContactFigures::limiting_stress_area_share}};
+     &ContactFigures::limiting_stress_area_share},
+    {&FlankContactBatchResults::asperity_load, &ContactFigures::asperity_load}};
 
 }  // namespace
 

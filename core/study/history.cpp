@@ -64,6 +64,14 @@ std::string_view history_column_name(HistoryColumn column) {
       return "flank_pinion_specific_sliding";
     case HistoryColumn::kFlankGearSpecificSliding:
       return "flank_gear_specific_sliding";
+    case HistoryColumn::kFlankEntrainmentSpeed:
+      return "flank_entrainment_speed_metres_per_second";
+    case HistoryColumn::kFlankMeanShearStress:
+      return "flank_mean_shear_stress_pascals";
+    case HistoryColumn::kFlankLimitingStressAreaShare:
+      return "flank_limiting_stress_area_share";
+    case HistoryColumn::kFlankAsperityLoad:
+      return "flank_asperity_load_newtons";
   }
   return "";
 }

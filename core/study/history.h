@@ -37,10 +37,13 @@ enum class HistoryColumn {
   kFlankFlashTemperatureRise,         ///< (dT_f)_av, eq 39 [K]
   kFlankPinionSpecificSliding,        ///< [-]
   kFlankGearSpecificSliding,          ///< [-]
+  kFlankEntrainmentSpeed,             ///< U_eff, eq 17 [m/s]
+  kFlankMeanShearStress,              ///< area mean of eq 23 under the limit [Pa]
+  kFlankLimitingStressAreaShare,      ///< share of the contact area on the limiting stress [-]
+  kFlankAsperityLoad,                 ///< W_asp, eq 41 [N]
 };
 
-inline constexpr int kHistoryColumns =
-    static_cast<int>(HistoryColumn::kFlankGearSpecificSliding) + 1;
+inline constexpr int kHistoryColumns = static_cast<int>(HistoryColumn::kFlankAsperityLoad) + 1;
 
 bool is_per_flank(HistoryColumn column);
 /// e.g. "dynamic_transmission_error_metres", "flank_load_newtons"; unit suffix included.

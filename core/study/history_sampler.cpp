@@ -83,6 +83,14 @@ double flank_value(HistoryColumn column, int k, const Instant& at) {
       return c.specific_sliding.surface_1;
     case HistoryColumn::kFlankGearSpecificSliding:
       return c.specific_sliding.surface_2;
+    case HistoryColumn::kFlankEntrainmentSpeed:
+      return c.entrainment_speed;
+    case HistoryColumn::kFlankMeanShearStress:
+      return c.mean_shear_stress;
+    case HistoryColumn::kFlankLimitingStressAreaShare:
+      return c.limiting_stress_area_share;
+    case HistoryColumn::kFlankAsperityLoad:
+      return c.asperity_load;
     default:
       return 0;
   }

@@ -79,6 +79,14 @@ std::string_view history_column_description(HistoryColumn column) {
       return "specific sliding of the pinion: sliding speed over the speed of its surface";
     case HistoryColumn::kFlankGearSpecificSliding:
       return "specific sliding of the gear: sliding speed over the speed of its surface";
+    case HistoryColumn::kFlankEntrainmentSpeed:
+      return "entrainment speed U_eff of the flank, eq 17";
+    case HistoryColumn::kFlankMeanShearStress:
+      return "mean shear stress of the film of the flank, eq 23 under the limiting shear stress";
+    case HistoryColumn::kFlankLimitingStressAreaShare:
+      return "share of the contact area of the flank at the limiting shear stress";
+    case HistoryColumn::kFlankAsperityLoad:
+      return "part of the normal load that asperities carry, W_asp, eq 41";
   }
   return "";
 }

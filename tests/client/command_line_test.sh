@@ -244,7 +244,7 @@ out_has '--output, -o <DIR>'
 out_lacks '--output, -o <table'
 
 echo "--- point"
-expect 0 point --lubricant paper-fluid-1 --speed-kilometres-per-hour 72.5 --progress lines
+expect 0 point --lubricant paper-fluid-1 --speed-kilometres-per-hour 72.5 --solver-details --progress lines
 for part in 'inefficiency, energy mean +[0-9.]+ %' 'inefficiency, RMS' 'mesh loss +[0-9.]+ W' \
   'film ratio lambda' 'contact loss' 'model version' 'input hash +[0-9a-f]{64}' \
   'relative solver error +0\.[0-9]+ +%' 'right-hand sides' 'assumed'; do

@@ -269,10 +269,10 @@ CurveUncertainty sample_uncertainty(const v1::Simulation& curve) {
 TEST(CurveReport, ShowsTheUncertaintyOfTheInputsBesideTheSolversError) {
   const v1::Simulation curve = sample_curve("1", 1);
   const CurveUncertainty uncertainty = sample_uncertainty(curve);
-  const std::string text = curve_report(curve, false, &uncertainty);
+  const std::string text = curve_report(curve, {}, &uncertainty);
   EXPECT_TRUE(has_text(text, "+/- 0.37"));
   EXPECT_TRUE(has_text(text, "Measure it."));
-  EXPECT_FALSE(has_text(curve_report(curve, false), "+/- 0.37"));
+  EXPECT_FALSE(has_text(curve_report(curve, {}), "+/- 0.37"));
 }
 
 TEST(CurvePlot, DrawsUncertaintiesAsBandsAndExplainsThem) {

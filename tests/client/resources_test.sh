@@ -14,10 +14,14 @@ out_lacks() { ! grep -qE -- "$1" "$folder/out" || fail "tribodyn $asked: '$1' on
 echo "--- from three numbers to a curve"
 expect 0 lubricants create my-oil --kv40 73.3 --kv100 8.86 --density15 870
 for part in 'viscosity index +92\.4 ' 'SAE J306 grade +80' 'Estimated, not measured' \
-  'pressure viscosity coefficient +20\.5[0-9]* +1/GPa +5\.1 +assumed' 'thermal conductivity .* assumed' \
+  '14 parameters: 3 fitted, .* assumed' 'tribodyn lubricants get my-oil' \
   'T_0' 'tribodyn curve --lubricant my-oil'; do
   out_has "$part"
 done
+out_lacks 'thermal conductivity .* assumed'
+expect 0 lubricants get my-oil
+out_has 'pressure viscosity coefficient +20\.5[0-9]* +1/GPa +5\.1 +assumed'
+out_has 'thermal conductivity .* assumed'
 err_is_empty
 expect 0 curve --lubricant my-oil --first-speed 40 --last-speed 60 --speed-step 10
 out_has 'Parameters of the lubricant that are assumed, not measured'
@@ -52,6 +56,8 @@ expect 0 lubricants create units --kv40 73.3cSt --kv100 '8.86 mm^2/s' --density1
   --pressure-viscosity 20/GPa --pressure-viscosity-temperature 40C --thermal-conductivity 0.14W/mK \
   --limiting-shear-stress-at-zero-pressure '4 MPa' --relaxation-time 450ns --brookfield -40=140000 \
   --provenance 'pressure-viscosity=measured:Laboratory X' --uncertainty pressure-viscosity=0.5/GPa
+out_has ' 1 measured'
+expect 0 lubricants get units
 out_has 'pressure viscosity coefficient +20 +1/GPa +0.5 +measured'
 out_has 'relaxation time +0.45 +us +user'
 out_has 'SAE J306 grade +75W-80'
@@ -278,6 +284,7 @@ out_has 'KV40 +110 '
 out_has 'base oil +ester'
 out_has 'pressure viscosity coefficient +20 .*measured'
 expect 0 lubricants import table-oil.csv --id based-table --like based
+expect 0 lubricants get based-table
 out_has 'KV40 +73\.3 '
 out_has 'density at 15 C +87[0-9]'
 out_has 'pressure viscosity coefficient +20 .*measured'

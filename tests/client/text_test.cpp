@@ -18,6 +18,7 @@
 #include "client/cpp/report/limits_report.h"
 #include "client/cpp/report/point_report.h"
 #include "client/cpp/report/precision.h"
+#include "client/cpp/report/resource_report.h"
 #include "client/cpp/report/results.h"
 #include "client/cpp/text/csv.h"
 #include "client/cpp/text/output.h"
@@ -169,7 +170,7 @@ TEST(Csv, UnsetOptionalIsEmptyNotZero) {
 }
 
 TEST(PointReport, NamesTheLossModelErrorHashAndWarnings) {
-  const std::string text = squeezed(point_report(sample_point(), false));
+  const std::string text = squeezed(point_report(sample_point(), {}));
   for (const char* part :
        {"Mesh loss (at the tooth contact", "inefficiency, energy mean", "eq 30", "72.5 km/h",
         "pinion torque", "film ratio lambda", "contact loss yes", "0.600 ms",
@@ -179,8 +180,39 @@ TEST(PointReport, NamesTheLossModelErrorHashAndWarnings) {
     EXPECT_TRUE(holds(text, part));
   }
   EXPECT_EQ(text.find("axle loss"), std::string::npos);
-  EXPECT_TRUE(
-      holds(point_report(sample_point(), true), "asperity_radius_metres = 4e-05 m (inside"));
+  EXPECT_TRUE(holds(point_report(sample_point(), {.assumptions = true}),
+                    "asperity_radius_metres = 4e-05 m (inside"));
+}
+
+TEST(PointReport, ShowsTheStatisticsOfTheSolverOnRequestAndWhereNoSteadyStateWasFound) {
+  v1::Simulation simulation = sample_point();
+  v1::PointResult& result = *simulation.mutable_result()->mutable_points(0)->mutable_result();
+  result.set_settled(true);
+  result.set_period_in_mesh_cycles(2);
+  const std::string brief = squeezed(point_report(simulation, {}));
+  EXPECT_TRUE(holds(brief, "settled, period of 2 mesh cycles"));
+  EXPECT_FALSE(holds(brief, "Floquet"));
+  EXPECT_TRUE(holds(point_report(simulation, {.solver = true}), "Floquet"));
+  result.set_settled(false);
+  EXPECT_TRUE(holds(point_report(simulation, {}), "Floquet"));
+  result.set_settled(true);
+  result.set_period_in_mesh_cycles(0);
+  EXPECT_TRUE(holds(point_report(simulation, {}), "Floquet"));
+}
+
+TEST(ResourceSheet, OfALubricantSummedUpCountsItsParametersByOrigin) {
+  v1::Lubricant oil;
+  oil.set_name("lubricants/my-oil");
+  oil.set_thermal_conductivity_watts_per_metre_kelvin(0.14);
+  oil.set_relaxation_time_seconds(1e-6);
+  auto& provenance = *oil.add_provenance();
+  provenance.set_field("thermal_conductivity_watts_per_metre_kelvin");
+  provenance.set_provenance(v1::PROVENANCE_ASSUMED);
+  const std::string brief = squeezed(resource_sheet(oil, ResourceDetail::kSummary));
+  EXPECT_TRUE(holds(brief, " 1 assumed"));
+  EXPECT_TRUE(holds(brief, "tribodyn lubricants get my-oil"));
+  EXPECT_FALSE(holds(brief, "0.14"));
+  EXPECT_TRUE(holds(resource_sheet(oil), "0.14"));
 }
 
 TEST(PointReport, NamesTheFiguresThatFormulatorsThinkIn) {
@@ -190,7 +222,7 @@ TEST(PointReport, NamesTheFiguresThatFormulatorsThinkIn) {
   result.mutable_flank_losses(1)->set_friction_coefficient(0.0387);
   result.mutable_pinion_specific_sliding()->set_maximum(1.375);
   result.mutable_flash_temperature_rise_kelvin()->set_maximum(61.25);
-  const std::string text = squeezed(point_report(simulation, false));
+  const std::string text = squeezed(point_report(simulation, {}));
   EXPECT_TRUE(holds(text, "mesh friction coefficient 0.0412"));
   EXPECT_TRUE(holds(text, "boundary; friction coefficient 0.0387"));
   EXPECT_TRUE(holds(text, "specific sliding, pinion"));
@@ -244,14 +276,14 @@ TEST(LimitsReport, OfACurveCountsTheSpeedsAtWhichALimitIsNotKept) {
 
 TEST(PointReport, NamesTheShaftOfTheInputPower) {
   v1::Simulation simulation = sample_point();
-  EXPECT_TRUE(holds(squeezed(point_report(simulation, false)), "kW input at the pinion"));
+  EXPECT_TRUE(holds(squeezed(point_report(simulation, {})), "kW input at the pinion"));
   v1::PointResult& coast = *simulation.mutable_result()->mutable_points(0)->mutable_result();
   coast.set_pinion_torque_newton_metres(-30);
   coast.set_input_power_watts(6086);
   coast.mutable_power_balance()->set_input_joules(-8);
   coast.mutable_power_balance()->set_output_joules(-9);
   coast.mutable_power_balance()->set_friction_joules(1);
-  const std::string text = squeezed(point_report(simulation, false));
+  const std::string text = squeezed(point_report(simulation, {.solver = true}));
   EXPECT_TRUE(holds(text, "of 6.0860 kW input at the wheel: coast"));
   EXPECT_TRUE(holds(text, "9.0000 J in = 8.0000 out + 1.0000 friction"));
 }
@@ -260,7 +292,7 @@ TEST(PointReport, NamesFiguresWithoutErrorEstimate) {
   v1::Simulation simulation = sample_point();
   auto& result = *simulation.mutable_result()->mutable_points(0)->mutable_result();
   result.clear_estimated_relative_error();
-  const std::string text = squeezed(point_report(simulation, false));
+  const std::string text = squeezed(point_report(simulation, {}));
   EXPECT_TRUE(holds(text, "relative solver error not estimated"));
   EXPECT_TRUE(holds(text, "three digits are given"));
   EXPECT_TRUE(holds(text, "inefficiency, energy mean 1.33 %"));
@@ -275,7 +307,7 @@ TEST(PointReport, HasNoMoreDigitsThanTheErrorJustifies) {
   result.mutable_maximum_pressure_pascals()->set_maximum(6.0164e8);
   const auto report = [&](double error) {
     result.set_estimated_relative_error(error);
-    return squeezed(point_report(simulation, false));
+    return squeezed(point_report(simulation, {}));
   };
   const std::map<double, std::vector<const char*>> expected = {
       {5e-3,
@@ -301,7 +333,7 @@ TEST(CurveReport, HasOneLinePerSpeedAndTheReasonOfAMissingOne) {
     point.set_refusal_reason("WORK_LIMIT");
     point.set_refusal_message("no steady state within 4000 mesh cycles");
   }
-  const std::string text = curve_report(curve, false);
+  const std::string text = curve_report(curve, {});
   for (const char* part :
        {"lubricants/2: inefficiency curve from 20 to 140 km/h", "no result",
         "30, 35 km/h: no steady state within 4000 mesh cycles [WORK_LIMIT]", "yes", "mesh loss"}) {
@@ -311,11 +343,11 @@ TEST(CurveReport, HasOneLinePerSpeedAndTheReasonOfAMissingOne) {
 
 TEST(CurveReport, NamesIndependentPoints) {
   v1::Simulation curve = sample_curve("2", 1);
-  EXPECT_FALSE(holds(curve_report(curve, false), "solved independently"));
+  EXPECT_FALSE(holds(curve_report(curve, {}), "solved independently"));
   curve.mutable_inefficiency_curve()->clear_direction();
   curve.mutable_inefficiency_curve()->set_independent_points(true);
   curve.mutable_result()->set_independent_points(true);
-  const std::string text = squeezed(curve_report(curve, false));
+  const std::string text = squeezed(curve_report(curve, {}));
   EXPECT_TRUE(holds(text, "25 speeds, independent points"));
   EXPECT_TRUE(holds(text, "neither followed a branch of steady states"));
   EXPECT_FALSE(holds(text, "sweep"));
@@ -326,7 +358,7 @@ TEST(CurveReport, PrintsErrorEstimatesBesideTheFigures) {
   v1::Simulation curve = sample_curve("2", 1);
   auto& points = *curve.mutable_result()->mutable_points();
   points[0].mutable_result()->set_estimated_relative_error(3e-4);
-  const std::string text = squeezed(curve_report(curve, false));
+  const std::string text = squeezed(curve_report(curve, {}));
   EXPECT_TRUE(holds(text, "solver error"));
   EXPECT_TRUE(holds(text, " 20 1.350 +/- 0.0004 1.391 5.8 ")) << "in the unit of the figure";
   EXPECT_TRUE(holds(text, " 25 1.34 - 1.38 7.5 "));
@@ -346,7 +378,7 @@ std::string one_line(const std::string& text) {
 TEST(CurveReport, GivesLargeLossesInKilowatts) {
   v1::Simulation curve = sample_curve("2", 1);
   curve.mutable_result()->mutable_points(3)->mutable_result()->set_mesh_loss_power_watts(1553);
-  const std::string text = squeezed(curve_report(curve, false));
+  const std::string text = squeezed(curve_report(curve, {}));
   EXPECT_TRUE(holds(text, " kW "));
   EXPECT_TRUE(holds(text, " 1.55 "));
   EXPECT_EQ(text.find("e+"), std::string::npos);
@@ -358,12 +390,12 @@ TEST(PointReport, GivesLargeLossesInKilowatts) {
   result.set_estimated_relative_error(3e-3);
   result.set_mesh_loss_power_watts(1553.2);
   result.set_boundary_loss_power_watts(53);
-  const std::string text = squeezed(point_report(simulation, false));
+  const std::string text = squeezed(point_report(simulation, {}));
   EXPECT_TRUE(holds(text, "mesh loss 1.55 kW"));
   EXPECT_TRUE(holds(text, "boundary 0.05 kW"));
   EXPECT_EQ(text.find("e+"), std::string::npos);
   result.set_inefficiency_energy_mean_percent(1.1783);
-  EXPECT_TRUE(holds(squeezed(point_report(simulation, false)), "+/- 0.004 (solver)"));
+  EXPECT_TRUE(holds(squeezed(point_report(simulation, {})), "+/- 0.004 (solver)"));
 }
 
 TEST(Reports, BeginWithATorqueFarBeyondTheDataOfTheGearSet) {
@@ -375,7 +407,7 @@ TEST(Reports, BeginWithATorqueFarBeyondTheDataOfTheGearSet) {
   auto& result = *simulation.mutable_result()->mutable_points(0)->mutable_result();
   const auto report = [&](double torque) {
     result.set_pinion_torque_newton_metres(torque);
-    return one_line(results_text({simulation}, OutputFormat::kTable, true, false,
+    return one_line(results_text({simulation}, OutputFormat::kTable, true, {},
                                  {{"gearSets/A@1", largest_torque(gear_set)}}));
   };
   const std::string sentence =
@@ -398,7 +430,7 @@ TEST(Reports, NameAWarningInPlainWordsBeforeItsCode) {
   period.set_code("PERIOD");
   period.set_message("repeats after 2");
   curve.mutable_result()->mutable_points(10)->mutable_branch_end();
-  const std::string text = one_line(curve_report(curve, false));
+  const std::string text = one_line(curve_report(curve, {}));
   EXPECT_TRUE(holds(text,
                     "Outside the validated range Cold inlet, do not rank oils here, at 20 to 30 "
                     "km/h. At 20 km/h: inlet at 0 C. [COLD_INLET]"));

@@ -89,7 +89,14 @@ struct RecordedPoint {
                                HistoryColumn::kFlankFrictionCoefficient,
                                HistoryColumn::kFlankFlashTemperatureRise,
                                HistoryColumn::kFlankPinionSpecificSliding,
-                               HistoryColumn::kFlankGearSpecificSliding};
+                               HistoryColumn::kFlankGearSpecificSliding,
+                               HistoryColumn::kFlankViscousFriction,
+                               HistoryColumn::kFlankBoundaryFriction,
+                               HistoryColumn::kFlankMaximumPressure,
+                               HistoryColumn::kFlankEntrainmentSpeed,
+                               HistoryColumn::kFlankMeanShearStress,
+                               HistoryColumn::kFlankLimitingStressAreaShare,
+                               HistoryColumn::kFlankAsperityLoad};
     result = solve_operating_point(scene, condition, options);
     EXPECT_EQ(result.period_in_mesh_cycles, 1);
     for (std::size_t c = 0; c < result.history.names.size(); ++c) {
@@ -167,6 +174,57 @@ void expect_mesh_figures(const RecordedPoint& point, double tolerance) {
   expect_extremes("flank_flash_temperature_rise_kelvin", r.flash_temperature_rise);
   expect_extremes("flank_pinion_specific_sliding", r.pinion_specific_sliding);
   expect_extremes("flank_gear_specific_sliding", r.gear_specific_sliding);
+}
+
+/// Loads, stresses and speeds of flanks make up their friction (eqs 19, 27, 40) and their sliding.
+void expect_flank_identities(const RecordedPoint& point) {
+  const BoundaryFriction boundary = reference_scene().boundary;
+  int loaded = 0;
+  for (int k = 0; k < kFlankPairs; ++k) {
+    const std::vector<double>& loads = point.flank("flank_load_newtons", k);
+    for (std::size_t i = 0; i < loads.size(); ++i) {
+      const auto at = [&](const char* name) { return point.flank(name, k)[i]; };
+      const double asperity_load = at("flank_asperity_load_newtons");
+      const double share = at("flank_limiting_stress_area_share");
+      if (loads[i] == 0) {
+        EXPECT_EQ(asperity_load, 0);
+        EXPECT_EQ(at("flank_entrainment_speed_metres_per_second"), 0);
+        continue;
+      }
+      ++loaded;
+      ASSERT_GT(asperity_load, 0);
+      ASSERT_LT(asperity_load, loads[i]);
+      ASSERT_GE(share, 0);
+      ASSERT_LE(share, 1);
+      const double contact_area =
+          1.5 * (loads[i] - asperity_load) / at("flank_maximum_pressure_pascals");
+      const double asperity_area = (at("flank_boundary_friction_newtons") -
+                                    boundary.asperity_friction_coefficient * asperity_load) /
+                                   boundary.tribofilm_shear_strength;
+      const double viscous = at("flank_mean_shear_stress_pascals") * (contact_area - asperity_area);
+      ASSERT_NEAR(viscous, at("flank_viscous_friction_newtons"), 1e-7 * viscous) << k << ' ' << i;
+      // Both surfaces: u_1^2 + u_2^2 = 2 U^2 + V_s^2/2.
+      const double sliding = at("flank_sliding_speed_metres_per_second");
+      const double entrainment = at("flank_entrainment_speed_metres_per_second");
+      const double pinion = sliding / at("flank_pinion_specific_sliding");
+      const double gear = sliding / at("flank_gear_specific_sliding");
+      const double expected = 2 * entrainment * entrainment + 0.5 * sliding * sliding;
+      ASSERT_NEAR(pinion * pinion + gear * gear, expected, 1e-9 * expected) << k << ' ' << i;
+    }
+  }
+  EXPECT_GT(loaded, 2000);
+}
+
+TEST(FlankHistories, OfShootingMakeUpFrictionAndSliding) {
+  expect_flank_identities({72.5, PointModel::kFull, SteadyStateMethod::kShooting});
+}
+
+TEST(FlankHistories, OfAMarchMakeUpFrictionAndSliding) {
+  expect_flank_identities({50, PointModel::kFull, SteadyStateMethod::kMarch});
+}
+
+TEST(FlankHistories, OfTheQuasiStaticModelMakeUpFrictionAndSliding) {
+  expect_flank_identities({50, PointModel::kQuasiStatic, SteadyStateMethod::kAutomatic});
 }
 
 TEST(MeshFigures, OfASmoothPointAreThoseOfItsHistory) {

@@ -23,7 +23,10 @@ struct FaultyFile {
     return self.base()->pMethods->xClose(self.base());
   }
   static int read(sqlite3_file* file, void* bytes, int count, sqlite3_int64 offset) {
-    return of(file).base()->pMethods->xRead(of(file).base(), bytes, count, offset);
+    FaultyFile& self = of(file);
+    const int due = self.vfs->attempt(FaultyVfs::Operation::kRead, SQLITE_IOERR_READ);
+    if (due != SQLITE_OK) return due;
+    return self.base()->pMethods->xRead(self.base(), bytes, count, offset);
   }
   static int write(sqlite3_file* file, const void* bytes, int count, sqlite3_int64 offset) {
     FaultyFile& self = of(file);
@@ -222,9 +225,13 @@ int FaultyVfs::count(Operation operation) const {
 
 int FaultyVfs::count() const {
   const std::lock_guard lock(mutex_);
+  return operations_without_reads();
+}
+
+int FaultyVfs::operations_without_reads() const {
   int all = 0;
   for (const int each : counts_) all += each;
-  return all;
+  return all - counts_[static_cast<int>(Operation::kRead)];
 }
 
 std::int64_t FaultyVfs::written_bytes() const {
@@ -236,9 +243,8 @@ int FaultyVfs::attempt(Operation operation, int error, std::int64_t bytes) {
   const std::lock_guard lock(mutex_);
   const int index = static_cast<int>(operation);
   const int now = ++counts_[index];
-  int all = 0;
-  for (const int each : counts_) all += each;
-  if (power_off_at_ > 0 && all >= power_off_at_) return error;
+  const bool off = power_off_at_ > 0 && operations_without_reads() >= power_off_at_;
+  if (off && operation != Operation::kRead) return error;
   if (fail_at_[index] > 0 && (now == fail_at_[index] || (lasting_ && now > fail_at_[index]))) {
     return error;
   }

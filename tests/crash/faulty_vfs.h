@@ -19,8 +19,8 @@ namespace tribodyn::crash {
 /// while no database is open.
 class FaultyVfs {
  public:
-  enum class Operation { kOpen, kWrite, kSync };
-  static constexpr int kOperations = 3;
+  enum class Operation { kOpen, kWrite, kSync, kRead };
+  static constexpr int kOperations = 4;
 
   FaultyVfs();
   ~FaultyVfs();
@@ -29,7 +29,8 @@ class FaultyVfs {
 
   /// Makes the n-th operation of this kind from now on fail, and if `lasting` all later ones.
   void fail(Operation operation, int n, bool lasting);
-  /// Makes every operation fail from the n-th one on: the power is off.
+  /// Makes every operation but reads fail from the n-th one on, reads not counted: the power is
+  /// off.
   void lose_power_at(int n);
   /// Allows `bytes` bytes of writes from now on; then the disk is full.
   void limit_space(std::int64_t bytes);
@@ -42,6 +43,7 @@ class FaultyVfs {
 
   /// Returns the number of operations since the last of the calls above.
   int count(Operation operation) const;
+  /// As above, of all kinds but reads.
   int count() const;
   std::int64_t written_bytes() const;
 
@@ -68,6 +70,7 @@ class FaultyVfs {
 
   /// Returns SQLITE_OK, or `error` if the operation must fail.
   int attempt(Operation operation, int error, std::int64_t bytes = 0);
+  int operations_without_reads() const;  ///< requires mutex_
   std::function<void()> sync_action() const;
   void begin_plan();
   void note_open(const std::string& path);

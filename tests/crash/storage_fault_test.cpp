@@ -1,5 +1,5 @@
-// Tests of the store on a file system with faults: every open, write and sync of a session fails in
-// turn, the disk is full, and power fails at any moment and takes unsynced writes with it.
+// Tests of the store on a file system with faults: every open, read, write and sync of a session
+// fails in turn, the disk is full, and power fails at any moment and takes unsynced writes with it.
 // Afterwards all acknowledged changes must exist and the database must be sound.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -314,9 +314,11 @@ class StorageFault : public testing::Test {
   }
 
   void fail_every(FaultyVfs::Operation operation, const std::string& name) {
-    // There is one session for each operation; under sanitizers all writes would take minutes.
-    const int slowed = kUnderAddressSanitizer ? 4 : 1;
-    const int stride = operation == FaultyVfs::Operation::kWrite ? slowed : 1;
+    // There is one session for each operation; under sanitizers all writes and reads would take
+    // minutes.
+    const bool many =
+        operation == FaultyVfs::Operation::kWrite || operation == FaultyVfs::Operation::kRead;
+    const int stride = many && kUnderAddressSanitizer ? 4 : 1;
     for (const bool lasting : {false, true}) {
       int met = 0;
       for (int n = 1; !HasFailure(); n += stride, ++met) {
@@ -387,6 +389,8 @@ TEST_F(StorageFault, EveryOpenMayFail) { fail_every(FaultyVfs::Operation::kOpen,
 TEST_F(StorageFault, EveryWriteMayFail) { fail_every(FaultyVfs::Operation::kWrite, "write"); }
 
 TEST_F(StorageFault, EverySyncMayFail) { fail_every(FaultyVfs::Operation::kSync, "sync"); }
+
+TEST_F(StorageFault, EveryReadMayFail) { fail_every(FaultyVfs::Operation::kRead, "read"); }
 
 TEST_F(StorageFault, PowerMayGoAtAnyMoment) {
   const int losses = number_from("TRIBODYN_POWER_LOSSES", 100);

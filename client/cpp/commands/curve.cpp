@@ -128,7 +128,7 @@ int run_curve(CurveFlags& flags, const CommonOptions& options) {
       (options.output_format == OutputFormat::kTable || !flags.plot_path.empty());
   const CurveUncertainties uncertainties =
       shows_uncertainty ? curve_uncertainties(ended, connection) : CurveUncertainties();
-  std::cout << shown_results(ended, connection, options, false, flags.scenario.shows_assumptions,
+  std::cout << shown_results(ended, connection, options, false, flags.scenario.details,
                              uncertainties);
   std::vector<v1::Simulation> succeeded;
   for (const v1::Simulation& simulation : ended) {

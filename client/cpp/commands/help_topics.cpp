@@ -94,7 +94,7 @@ compare: FIGURE_value, FIGURE_standard_uncertainty (of the inputs), FIGURE_inter
 explain: one row for each group of parameters; shapley_value is its share in the difference,
   first_effect and last_effect what it adds before and after all other groups.
 )"},
-      {"files", "what import, export and validate read and write",
+      {"files", "what import, export and validate read and write; pictures in print",
        R"text(Files
 
 A JSON file contains one resource, with the field names of the protos (snake_case or camelCase), or
@@ -154,6 +154,10 @@ interrupted or the server is lost. A resource may be derived from another one of
 any order. A name that exists is an error; with --replace the resource gets a new revision if
 anything differs, and a table changes only the fields of its columns. At most 20000 resources and
 64 MiB per import.
+
+Pictures (--plot) are SVG, which has no fixed size and whose texts remain texts: any drawing program
+changes their fonts and titles. For print, with librsvg2-bin of Debian:
+  rsvg-convert --format pdf --width 1200 --keep-aspect-ratio curve.svg > curve.pdf
 )text"},
       {"filters", "which resources a list shows, and in which order",
        R"(Filters of lists

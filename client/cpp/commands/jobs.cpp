@@ -24,7 +24,7 @@ struct JobFlags {
   ListOptions list;
   std::vector<std::string> labels;
   DeleteOptions deletion;
-  bool shows_assumptions = false;
+  ResultDetails details;
 };
 
 std::string time_text(const google::protobuf::Timestamp& time) {
@@ -92,7 +92,7 @@ std::string jobs_text(const std::vector<v1::Simulation>& simulations, OutputForm
     case OutputFormat::kJson:
       break;
   }
-  return results_text(simulations, format, alone, false, {});
+  return results_text(simulations, format, alone, {}, {});
 }
 
 int run_list(const JobFlags& flags, const CommonOptions& options) {
@@ -114,7 +114,7 @@ int run_get(const JobFlags& flags, const CommonOptions& options) {
   const v1::Simulation simulation =
       connection.get_simulation(resource_name("simulations", flags.names.front()));
   if (simulation.state() == v1::Simulation::SUCCEEDED) {
-    std::cout << shown_results({simulation}, connection, options, true, flags.shows_assumptions);
+    std::cout << shown_results({simulation}, connection, options, true, flags.details);
     return report_failures({simulation});
   }
   std::cout << jobs_text({simulation}, options.output_format, true);
@@ -140,7 +140,7 @@ std::vector<v1::Simulation> named_jobs(const JobFlags& flags, Connection& connec
 int run_watch(const JobFlags& flags, const CommonOptions& options) {
   Connection connection = options.connect();
   const auto jobs = ended(connection, named_jobs(flags, connection), options);
-  std::cout << shown_results(jobs, connection, options, false, flags.shows_assumptions);
+  std::cout << shown_results(jobs, connection, options, false, flags.details);
   return report_failures(jobs);
 }
 
@@ -175,7 +175,7 @@ int run_again(const JobFlags& flags, const CommonOptions& options) {
     jobs.push_back(connection.create_simulation(request_of(job), create));
   }
   jobs = ended(connection, jobs, options);
-  std::cout << shown_results(jobs, connection, options, false, flags.shows_assumptions);
+  std::cout << shown_results(jobs, connection, options, false, flags.details);
   return report_failures(jobs);
 }
 
@@ -243,7 +243,9 @@ Command job_command(const char* path, const char* summary, const char* about, co
   if (shows_results) {
     command.flags.group("Options");
     command.flags.toggle("--assumptions", "Print every assumption of the result.",
-                         [flags] { flags->shows_assumptions = true; });
+                         [flags] { flags->details.assumptions = true; });
+    command.flags.toggle("--solver-details", kSolverDetailsHelp,
+                         [flags] { flags->details.solver = true; });
   }
   command.check = [flags](Complaints& complaints) {
     if (flags->names.empty()) {

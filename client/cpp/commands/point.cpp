@@ -19,7 +19,7 @@ int run_point(PointFlags& flags, const CommonOptions& options) {
   *flags.scenario.simulation.mutable_operating_point() = operating_point_study(flags.point);
   Connection connection = options.connect();
   const auto ended = run_scenario(flags.scenario, connection, options);
-  std::cout << shown_results(ended, connection, options, true, flags.scenario.shows_assumptions);
+  std::cout << shown_results(ended, connection, options, true, flags.scenario.details);
   for (const v1::Simulation& simulation : ended) {
     if (options.output_format != OutputFormat::kTable) continue;
     const std::string uncertainty = point_uncertainty(simulation, connection);
@@ -61,7 +61,7 @@ Command point_command() {
       "point",
       "one operating point, in full",
       "Submits one operating point, watches it and prints inefficiencies, losses, film, "
-      "temperatures, contact loss, solver statistics and the number of assumptions; of a cruise "
+      "temperatures, contact loss and the number of assumptions; of a cruise "
       "also the uncertainty that the stated uncertainties of the inputs make.",
       {"tribodyn point --lubricant paper-fluid-1 --speed-kilometres-per-hour 72.5",
        "tribodyn point --lubricant paper-fluid-2 --speed 100 --sump-temperature-celsius 90 "
@@ -77,6 +77,8 @@ Command point_command() {
       "Also differentiate the figures by every parameter and print the elasticities. `tribodyn "
       "sensitivities` prints them alone.",
       [flags] { flags->point.study.set_sensitivities(true); });
+  command.flags.toggle("--solver-details", kSolverDetailsHelp,
+                       [flags] { flags->scenario.details.solver = true; });
   add_scenario_flags(command.flags, flags->scenario);
   command.check = [flags](Complaints& complaints) {
     check_operating_point(flags->point, complaints);

@@ -115,7 +115,8 @@ int import_resources(const ResourceKind& kind, const ImportFlags& flags,
     return kExitOk;
   }
   if (done.size() == 1) {
-    show_written("imported", *done.front(), flags.validate_only, options.output_format);
+    show_written("imported", *done.front(), flags.validate_only, options.output_format,
+                 ResourceDetail::kSummary);
     return kExitOk;
   }
   for (const ResourcePointer& each : done) {
@@ -153,7 +154,8 @@ int import_tables(const ResourceKind& kind, const ImportFlags& flags,
   flags.edits.apply(*resource);
   const ResourcePointer imported =
       create_with_tables(connection, kind, *resource, id, tables, flags.validate_only);
-  show_written("imported", *imported, flags.validate_only, options.output_format);
+  show_written("imported", *imported, flags.validate_only, options.output_format,
+               ResourceDetail::kSummary);
   if (kind.word == "lubricants" && options.output_format == OutputFormat::kTable &&
       !flags.validate_only) {
     std::cout << "\nNext:  tribodyn curve --lubricant " << id << "\n";

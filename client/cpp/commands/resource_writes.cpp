@@ -68,7 +68,8 @@ int run_create(const ResourceKind& kind, const WriteFlags& flags, const CommonOp
   set_text(*resource, "name", "");
   const ResourcePointer created = create_with_tables(
       connection, kind, *resource, resource_id(flags.name), flags.tables, flags.validate_only);
-  show_written("created", *created, flags.validate_only, options.output_format);
+  show_written("created", *created, flags.validate_only, options.output_format,
+               ResourceDetail::kSummary);
   if (kind.word == "lubricants" && options.output_format == OutputFormat::kTable &&
       !flags.validate_only) {
     std::cout << "\nNext:  tribodyn curve --lubricant " << resource_id(flags.name) << "\n";
@@ -96,7 +97,8 @@ int run_update(const ResourceKind& kind, const WriteFlags& flags, const CommonOp
   set_text(*resource, "name", name);
   if (!flags.etag.empty()) set_text(*resource, "etag", flags.etag);
   const ResourcePointer updated = kind.calls->update(connection, *resource, update);
-  show_written("updated", *updated, flags.validate_only, options.output_format);
+  show_written("updated", *updated, flags.validate_only, options.output_format,
+               ResourceDetail::kAll);
   return kExitOk;
 }
 
@@ -133,7 +135,7 @@ void show_in_short_help(const std::vector<std::string>& flags, Command& command)
 }  // namespace
 
 void show_written(const char* done, const Message& resource, bool validate_only,
-                  OutputFormat format) {
+                  OutputFormat format, ResourceDetail detail) {
   if (format == OutputFormat::kTable) {
     const auto* revision = resource.GetDescriptor()->FindFieldByName("revision");
     std::cout << (validate_only ? "valid, not written: " : std::string(done) + " ")
@@ -143,7 +145,7 @@ void show_written(const char* done, const Message& resource, bool validate_only,
     }
     std::cout << "\n\n";
   }
-  std::cout << resource_text(resource, format);
+  std::cout << resource_text(resource, format, validate_only ? ResourceDetail::kAll : detail);
 }
 
 Command create_command(const ResourceKind& kind) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "client/cpp/commands/command.h"
+#include "client/cpp/report/resource_report.h"
 #include "client/cpp/resources/edits.h"
 #include "client/cpp/resources/kind.h"
 
@@ -59,8 +60,9 @@ ResourcePointer create_with_tables(Connection& connection, const ResourceKind& k
                                    const google::protobuf::Message& resource, const std::string& id,
                                    const TableFiles& tables, bool validate_only);
 
-/// Prints `done` with the name of a resource, then the resource, on standard output.
+/// Prints `done` with the name of a resource, then the resource, on standard output. All of it if
+/// `validate_only`, because what was not written cannot be shown afterwards.
 void show_written(const char* done, const google::protobuf::Message& resource, bool validate_only,
-                  OutputFormat format);
+                  OutputFormat format, ResourceDetail detail);
 
 }  // namespace tribodyn::client

@@ -161,7 +161,7 @@ void add_scenario_flags(FlagList& flags, Scenario& scenario) {
                "Time from now after which a simulation that has not ended fails",
                [&](double value) { simulation.set_deadline_seconds(value); });
   flags.toggle("--assumptions", "Print every assumption of the result.",
-               [&] { scenario.shows_assumptions = true; });
+               [&] { scenario.details.assumptions = true; });
 }
 
 void check_scenario(const Scenario& scenario, bool several_lubricants, Complaints& complaints) {

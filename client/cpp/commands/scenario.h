@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "client/cpp/commands/command.h"
+#include "client/cpp/report/result_details.h"
 #include "tribodyn/v1/simulations.pb.h"
 
 namespace tribodyn::client {
@@ -19,7 +20,7 @@ struct Scenario {
   v1::Simulation simulation;
   bool detach = false;  ///< submit, print how to watch the jobs, and return
   CreateOptions create;
-  bool shows_assumptions = false;  ///< print all assumptions
+  ResultDetails details;
 };
 
 /// Adds the flags; they write to `scenario`, which must outlive them. Solver and model flags come

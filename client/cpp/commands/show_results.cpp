@@ -30,7 +30,7 @@ std::vector<v1::GearSet> gear_sets_of(const std::vector<v1::Simulation>& simulat
 }  // namespace
 
 std::string shown_results(const std::vector<v1::Simulation>& simulations, Connection& connection,
-                          const CommonOptions& options, bool alone, bool shows_assumptions,
+                          const CommonOptions& options, bool alone, const ResultDetails& details,
                           const CurveUncertainties& uncertainties) {
   TorqueLimits limits;
   if (options.output_format == OutputFormat::kTable) {
@@ -38,8 +38,7 @@ std::string shown_results(const std::vector<v1::Simulation>& simulations, Connec
       limits[gear_set.name()] = largest_torque(gear_set);
     }
   }
-  return results_text(simulations, options.output_format, alone, shows_assumptions, limits,
-                      uncertainties);
+  return results_text(simulations, options.output_format, alone, details, limits, uncertainties);
 }
 
 }  // namespace tribodyn::client

@@ -160,7 +160,7 @@ std::string direction_word(const v1::Simulation& simulation) {
 
 }  // namespace
 
-std::string curve_report(const v1::Simulation& simulation, bool shows_assumptions,
+std::string curve_report(const v1::Simulation& simulation, const ResultDetails& details,
                          const CurveUncertainty* uncertainty) {
   const v1::SimulationResult& result = simulation.result();
   const double seconds = run_seconds(simulation);
@@ -178,7 +178,7 @@ std::string curve_report(const v1::Simulation& simulation, bool shows_assumption
     notes.heading("Uncertainty of the inputs");
     notes.remark(uncertainty->remark);
   }
-  add_provenance(result, shows_assumptions, notes);
+  add_provenance(result, details.assumptions, notes);
   add_input_warnings(result.input_warnings(), notes);
   const std::string limits = limits_report(result);
   return head.text() + "\n" + curve_table(simulation, uncertainty).text() + "\n" +

@@ -216,22 +216,30 @@ std::string model_reason(const v1::Simulation& simulation, const v1::PointResult
   return "the error of a cheaper model may exceed the tolerance";
 }
 
+std::string cycles_text(int mesh_cycles) {
+  return std::to_string(mesh_cycles) + (mesh_cycles == 1 ? " mesh cycle" : " mesh cycles");
+}
+
+/// Adds the model and the steady state in one line each, and the statistics if `with_statistics`.
 void add_solver(const v1::Simulation& simulation, const v1::PointResult& result,
-                const Precision& precision, Sheet& sheet) {
+                const Precision& precision, bool with_statistics, Sheet& sheet) {
   sheet.heading("Solver");
   sheet.line("model used", model_name(result.model()), "", model_reason(simulation, result));
+  if (!with_statistics) {
+    sheet.line("steady state", "settled, period of " + cycles_text(result.period_in_mesh_cycles()),
+               "", "its statistics: --solver-details");
+    return;
+  }
   if (result.steady_state_method() != v1::STEADY_STATE_METHOD_UNSPECIFIED) {
     sheet.line("steady state by", result.steady_state_method() == v1::STEADY_STATE_METHOD_SHOOTING
                                       ? "shooting under lagged friction"
                                       : "marching");
   }
   sheet.line("steady state", result.settled() ? "settled" : "not settled: averages of a record");
-  sheet.line("period",
-             result.period_in_mesh_cycles() > 0
-                 ? std::to_string(result.period_in_mesh_cycles()) +
-                       (result.period_in_mesh_cycles() == 1 ? " mesh cycle" : " mesh cycles")
-                 : "none found; averages over " + std::to_string(result.recorded_mesh_cycles()) +
-                       " mesh cycles");
+  sheet.line("period", result.period_in_mesh_cycles() > 0
+                           ? cycles_text(result.period_in_mesh_cycles())
+                           : "none found; averages over " +
+                                 std::to_string(result.recorded_mesh_cycles()) + " mesh cycles");
   const auto& statistics = result.statistics();
   sheet.line("periodicity defect", significant(statistics.periodicity_defect(), 3));
   sheet.line("largest Floquet multiplier", significant(statistics.largest_multiplier(), 3));
@@ -251,7 +259,7 @@ void add_solver(const v1::Simulation& simulation, const v1::PointResult& result,
 
 }  // namespace
 
-std::string point_report(const v1::Simulation& simulation, bool shows_assumptions) {
+std::string point_report(const v1::Simulation& simulation, const ResultDetails& details) {
   const auto& point = simulation.result().points_size() > 0 ? simulation.result().points(0)
                                                             : v1::CurvePoint::default_instance();
   Sheet head;
@@ -267,8 +275,9 @@ std::string point_report(const v1::Simulation& simulation, bool shows_assumption
   add_operation(result, simulation.operating_point().has_prescribed_torque(), precision, losses);
   Sheet rest;
   add_contact(result, simulation.operating_point().probe_coexisting_response(), precision, rest);
-  add_solver(simulation, result, precision, rest);
-  add_provenance(simulation.result(), shows_assumptions, rest);
+  const bool unusual = !result.settled() || result.period_in_mesh_cycles() == 0;
+  add_solver(simulation, result, precision, details.solver || unusual, rest);
+  add_provenance(simulation.result(), details.assumptions, rest);
   add_input_warnings(simulation.result().input_warnings(), rest);
   add_warnings(simulation, rest);
   const std::string limits = limits_report(simulation.result());

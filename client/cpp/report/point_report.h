@@ -2,12 +2,13 @@
 
 #include <string>
 
+#include "client/cpp/report/result_details.h"
 #include "tribodyn/v1/simulations.pb.h"
 
 namespace tribodyn::client {
 
-/// Returns everything about one operating point that has succeeded. With `shows_assumptions` it
-/// lists the assumptions instead of counting them.
-std::string point_report(const v1::Simulation& simulation, bool shows_assumptions);
+/// Returns one operating point that has succeeded. Where no steady state was found it shows the
+/// solver's statistics whatever `details` is.
+std::string point_report(const v1::Simulation& simulation, const ResultDetails& details);
 
 }  // namespace tribodyn::client

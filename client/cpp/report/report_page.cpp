@@ -118,10 +118,10 @@ std::string report_page(const ReportContents& contents) {
   out += html_chapter("Curves with warnings and assumptions");
   for (const v1::Simulation& curve : contents.curves) {
     const auto found = contents.uncertainties.find(curve.name());
-    out += html_closed_part(
-        resource_id(curve.lubricant_revision()),
-        html_preformatted(curve_report(
-            curve, true, found == contents.uncertainties.end() ? nullptr : &found->second)));
+    out += html_closed_part(resource_id(curve.lubricant_revision()),
+                            html_preformatted(curve_report(
+                                curve, {.assumptions = true},
+                                found == contents.uncertainties.end() ? nullptr : &found->second)));
   }
   out += html_chapter("To compute it again");
   out += html_paragraph("Model version " + first.result().model_version() + " on " +

@@ -171,6 +171,32 @@ std::string parameter_table(const Message& resource) {
   return table.text() + "\n" + notes.text();
 }
 
+/// Returns the number of parameters by origin, and the command that lists them.
+std::string parameter_summary(const v1::Lubricant& lubricant) {
+  std::vector<Parameter> parameters;
+  collect_parameters(lubricant, "", parameters);
+  std::vector<std::pair<std::string, int>> origins;  // in order of first use
+  for (const Parameter& parameter : parameters) {
+    const auto* known = provenance_of(lubricant, parameter.provenance_field);
+    const std::string origin = !is_known(parameter) ? "not stated"
+                               : known == nullptr   ? "of no stated origin"
+                                                    : provenance_word(known->provenance());
+    const auto found = std::find_if(origins.begin(), origins.end(),
+                                    [&](const auto& each) { return each.first == origin; });
+    if (found == origins.end()) {
+      origins.emplace_back(origin, 1);
+    } else {
+      ++found->second;
+    }
+  }
+  std::string text = std::to_string(parameters.size()) + " parameters: ";
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    text += (i == 0 ? "" : ", ") + std::to_string(origins[i].second) + " " + origins[i].first;
+  }
+  return wrapped(text, 0) + "Their values, uncertainties and sources:  tribodyn lubricants get " +
+         printable(resource_id(lubricant.name())) + "\n";
+}
+
 void add_identity(const Message& resource, Sheet& sheet) {
   sheet.heading(text_field(resource, "name") + (text_field(resource, "display_name").empty()
                                                     ? ""
@@ -341,12 +367,13 @@ const v1::ParameterProvenance* provenance_of(const Message& resource, const std:
   return of_all;
 }
 
-std::string resource_sheet(const Message& resource) {
+std::string resource_sheet(const Message& resource, ResourceDetail detail) {
   Sheet sheet;
   add_identity(resource, sheet);
   std::string text = sheet.text();
   if (const auto* lubricant = dynamic_cast<const v1::Lubricant*>(&resource)) {
     text += characterisation_sheet(*lubricant);
+    if (detail == ResourceDetail::kSummary) return text + "\n" + parameter_summary(*lubricant);
   }
   text += "\n" + parameter_table(resource);
   if (const auto* gear_set = dynamic_cast<const v1::GearSet*>(&resource)) {
@@ -382,7 +409,7 @@ std::string resource_table(const ResourceKind& kind, const std::vector<ResourceP
   return table.text();
 }
 
-std::string resource_text(const Message& resource, OutputFormat format) {
+std::string resource_text(const Message& resource, OutputFormat format, ResourceDetail detail) {
   switch (format) {
     case OutputFormat::kJson:
       return json_text(resource);
@@ -394,7 +421,7 @@ std::string resource_text(const Message& resource, OutputFormat format) {
     case OutputFormat::kTable:
       break;
   }
-  return resource_sheet(resource);
+  return resource_sheet(resource, detail);
 }
 
 std::string resources_text(const ResourceKind& kind, const std::vector<ResourcePointer>& resources,

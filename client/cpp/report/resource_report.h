@@ -8,17 +8,23 @@
 
 namespace tribodyn::client {
 
+/// What a text about a lubricant holds: all, or in place of the parameters their number by origin
+/// and the command that lists them. Texts about other resources hold all.
+enum class ResourceDetail { kAll, kSummary };
+
 /// Returns one resource as text: its names, for a lubricant its viscosities, index, grade and the
 /// misfit of its laws, every parameter with unit, uncertainty and origin, and the warnings.
-std::string resource_sheet(const google::protobuf::Message& resource);
+std::string resource_sheet(const google::protobuf::Message& resource,
+                           ResourceDetail detail = ResourceDetail::kAll);
 
 /// Returns a table with one line per resource. `as_revisions`: revisions of one resource, newest
 /// first.
 std::string resource_table(const ResourceKind& kind, const std::vector<ResourcePointer>& resources,
                            bool as_revisions);
 
-/// Returns one resource in any format.
-std::string resource_text(const google::protobuf::Message& resource, OutputFormat format);
+/// Returns one resource in any format. Only a table depends on `detail`.
+std::string resource_text(const google::protobuf::Message& resource, OutputFormat format,
+                          ResourceDetail detail = ResourceDetail::kAll);
 /// Returns resources as a table, as CSV with every number, or as JSON like the server's list
 /// response.
 std::string resources_text(const ResourceKind& kind, const std::vector<ResourcePointer>& resources,

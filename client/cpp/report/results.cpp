@@ -45,7 +45,7 @@ std::string torque_caution(const v1::Simulation& simulation, const TorqueLimits&
 }
 
 std::string results_text(const std::vector<v1::Simulation>& simulations, OutputFormat format,
-                         bool alone, bool shows_assumptions, const TorqueLimits& limits,
+                         bool alone, const ResultDetails& details, const TorqueLimits& limits,
                          const CurveUncertainties& uncertainties) {
   switch (format) {
     case OutputFormat::kJson: {
@@ -67,8 +67,8 @@ std::string results_text(const std::vector<v1::Simulation>& simulations, OutputF
     if (!sentence.empty()) text += caution(wrapped("! " + sentence, 0)) + "\n";
     const auto found = uncertainties.find(simulation.name());
     text += simulation.has_operating_point()
-                ? point_report(simulation, shows_assumptions)
-                : curve_report(simulation, shows_assumptions,
+                ? point_report(simulation, details)
+                : curve_report(simulation, details,
                                found == uncertainties.end() ? nullptr : &found->second);
   }
   return text;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "client/cpp/report/input_uncertainty.h"
+#include "client/cpp/report/result_details.h"
 #include "client/cpp/text/output.h"
 #include "tribodyn/v1/gear_sets.pb.h"
 #include "tribodyn/v1/simulations.pb.h"
@@ -24,7 +25,7 @@ std::string torque_caution(const v1::Simulation& simulation, const TorqueLimits&
 /// JSON shows all, as one Simulation if `alone`, else as a ListSimulationsResponse. A table begins
 /// with torque_caution(), and a table of a curve shows its uncertainty if `uncertainties` has it.
 std::string results_text(const std::vector<v1::Simulation>& simulations, OutputFormat format,
-                         bool alone, bool shows_assumptions, const TorqueLimits& limits,
+                         bool alone, const ResultDetails& details, const TorqueLimits& limits,
                          const CurveUncertainties& uncertainties = {});
 
 }  // namespace tribodyn::client
