@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/model_options.h"
 #include "core/surface/spectral_moments.h"
@@ -38,5 +39,22 @@ Roughness roughness_of_profiles(std::span<const MeasuredProfile> profiles,
 /// Source: B. Efron and C. Stein, Ann. Statist. 9 (1981) 586-596.
 std::optional<Roughness> roughness_uncertainty(std::span<const MeasuredProfile> profiles,
                                                const AsPublished& as_published);
+
+/// Returns the standard uncertainty of roughness_product(), likewise: the parameters of a surface
+/// are correlated.
+std::optional<double> roughness_product_uncertainty(std::span<const MeasuredProfile> profiles,
+                                                    const AsPublished& as_published);
+
+/// The profiles of one member and direction.
+struct ProfileGroup {
+  FlankMember member;
+  ProfileDirection direction;
+  int profiles;
+  SpectralMoments mean;
+  std::optional<SpectralMoments> deviation;  ///< standard, of single profiles; absent for one
+};
+
+/// Returns the groups in the order of their first profiles.
+std::vector<ProfileGroup> profile_groups(std::span<const MeasuredProfile> profiles);
 
 }  // namespace tribodyn

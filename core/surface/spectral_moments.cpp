@@ -82,6 +82,23 @@ SpectralMoments spectral_moments(std::span<const double> heights, double spacing
   return moments;
 }
 
+SpectralMoments sampled_moments(std::span<const double> heights, double spacing, int step,
+                                Levelling levelling) {
+  SpectralMoments mean{};
+  for (int first = 0; first < step; ++first) {
+    std::vector<double> samples;
+    for (std::size_t i = static_cast<std::size_t>(first); i < heights.size();
+         i += static_cast<std::size_t>(step)) {
+      samples.push_back(heights[i]);
+    }
+    const SpectralMoments moments = spectral_moments(samples, step * spacing, levelling);
+    mean.m0 += moments.m0 / step;
+    mean.m2 += moments.m2 / step;
+    mean.m4 += moments.m4 / step;
+  }
+  return mean;
+}
+
 double wave_length_in_spacings(const SpectralMoments& moments, double spacing) {
   const double half_angle = std::atan(0.5 * spacing * std::sqrt(moments.m4 / moments.m2));
   return std::numbers::pi / half_angle;

@@ -40,6 +40,12 @@ std::vector<double> levelled_profile(std::span<const double> heights, Levelling 
 SpectralMoments spectral_moments(std::span<const double> heights, double spacing,
                                  Levelling levelling = Levelling::kMean);
 
+/// spectral_moments() of every `step`-th height, averaged over the `step` first heights from which
+/// they may be taken. Shows how m2 and m4 move with the sampling interval. Throws Refusal
+/// PROFILE_UNUSABLE as spectral_moments() does, also if fewer than five heights are left.
+SpectralMoments sampled_moments(std::span<const double> heights, double spacing, int step,
+                                Levelling levelling);
+
 /// Length of the waves that make up slopes and curvatures of a profile sampled at `spacing` [m], in
 /// spacings: 2 pi/q of the wave whose m2 and m4, as spectral_moments() forms them, are in the
 /// profile's ratio, tan(q/2) = dx sqrt(m4/m2)/2. White noise has 3.

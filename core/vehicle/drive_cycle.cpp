@@ -41,7 +41,8 @@ std::vector<CyclePiece> pieces_of(const DriveCycle& cycle, double longest) {
   std::vector<CyclePiece> out;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const CyclePlace& to = places[i];
-    if (!std::isfinite(to.time) || !std::isfinite(to.speed) || !std::isfinite(to.ascent_angle)) {
+    if (!std::isfinite(to.time) || !std::isfinite(to.speed) || !std::isfinite(to.ascent_angle) ||
+        !std::isfinite(to.sump_temperature)) {
       refuse(i, "a number is not finite");
     }
     if (to.speed < 0) refuse(i, "the speed is negative");
@@ -53,10 +54,13 @@ std::vector<CyclePiece> pieces_of(const DriveCycle& cycle, double longest) {
       refuse(i, "the cycle is longer than 1000000 pieces");
     }
     const int parts = std::max(1, static_cast<int>(std::ceil(duration / longest - 1e-9)));
-    const double step = duration / parts, change = (to.speed - from.speed) / parts;
+    const double step = duration / parts;
+    const double change = (to.speed - from.speed) / parts;
+    const double warming = (to.sump_temperature - from.sump_temperature) / parts;
     for (int k = 0; k < parts; ++k) {
       out.push_back({from.time + k * step, step, from.speed + (k + 0.5) * change,
-                     (to.speed - from.speed) / duration, from.ascent_angle});
+                     (to.speed - from.speed) / duration, from.ascent_angle,
+                     from.sump_temperature + (k + 0.5) * warming});
     }
   }
   return out;
@@ -74,17 +78,6 @@ DriveCycle nedc() {
   for (int i = 0; i < 4; ++i) append(kUrban);
   append(kExtraUrban);
   return out;
-}
-
-std::optional<double> ascent_for_torque(const Vehicle& vehicle, double speed, double torque) {
-  // T/r - drag = m g (f_r cos a + sin a) = m g sqrt(1 + f_r^2) sin(a + atan f_r)  (eq 7)
-  const double level = wheel_torque(vehicle, speed, 0, 0);
-  const double rolling = vehicle.rolling_resistance_coefficient;
-  const double weight = vehicle.mass * vehicle.gravity;
-  const double force = (torque - level) / vehicle.wheel_radius + weight * rolling;
-  const double sine = force / (weight * std::hypot(1, rolling));
-  if (!(std::abs(sine) <= 1)) return std::nullopt;
-  return std::asin(sine) - std::atan(rolling);
 }
 
 }  // namespace tribodyn

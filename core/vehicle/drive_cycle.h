@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,11 +7,15 @@
 
 namespace tribodyn {
 
-/// A place of a drive cycle. Speed is linear in time between two places.
+/// Speed below which a vehicle counts as standing [m/s]: 0.1 km/h, the least speed of a point.
+inline constexpr double kStandstillSpeed = 0.1 / 3.6;
+
+/// A place of a drive cycle. Speed and temperature are linear in time between two places.
 struct CyclePlace {
-  double time;              ///< from the start [s]
-  double speed;             ///< of the vehicle, from 0 [m/s]
-  double ascent_angle = 0;  ///< of the road, up to the next place [rad]
+  double time;                  ///< from the start [s]
+  double speed;                 ///< of the vehicle, from 0 [m/s]
+  double ascent_angle = 0;      ///< of the road, up to the next place [rad]
+  double sump_temperature = 0;  ///< [K]
 };
 
 /// Speed over time, in ascending order of time.
@@ -21,14 +24,15 @@ struct DriveCycle {
   std::vector<CyclePlace> places;
 };
 
-/// A time during which acceleration and slope are constant and the speed counts as constant: a
-/// quasi-steady operating point.
+/// A time during which acceleration and slope are constant, and speed and temperature count as
+/// constant: a quasi-steady operating point.
 struct CyclePiece {
-  double start;         ///< [s]
-  double duration;      ///< [s]
-  double speed;         ///< mean [m/s]; 0 at standstill
-  double acceleration;  ///< [m/s2]
-  double ascent_angle;  ///< [rad]
+  double start;             ///< [s]
+  double duration;          ///< [s]
+  double speed;             ///< mean [m/s]; 0 at standstill
+  double acceleration;      ///< [m/s2]
+  double ascent_angle;      ///< [rad]
+  double sump_temperature;  ///< mean [K]
 };
 
 /// Returns the pieces between consecutive places, those longer than `longest` [s] cut into equal
@@ -42,10 +46,5 @@ std::vector<CyclePiece> pieces_of(const DriveCycle& cycle, double longest = 1);
 /// call idling: 60 s of each urban and 40 s of the extra-urban part, 280 s in all; decelerations
 /// with the clutch disengaged count as driving.
 DriveCycle nedc();
-
-/// Returns the slope [rad] at which the vehicle, cruising at `speed` [m/s], has this torque [N m]
-/// at the ring gear shaft: the inverse of wheel_torque(). An instant of a drive cycle is the cruise
-/// point at that slope. Returns nullopt if no slope gives the torque.
-std::optional<double> ascent_for_torque(const Vehicle& vehicle, double speed, double torque);
 
 }  // namespace tribodyn

@@ -9,8 +9,10 @@
 #include "server/application/campaign_decisions.h"
 #include "server/application/campaigns.h"
 #include "server/application/contacts.h"
+#include "server/application/cycles.h"
 #include "server/application/imports.h"
 #include "server/application/points.h"
+#include "server/application/profiles.h"
 #include "server/application/resource_writes.h"
 #include "server/application/rigs.h"
 #include "server/application/schemas.h"
@@ -165,6 +167,10 @@ std::vector<Method> rows() {
                                                                      evaluate_contact),
       unary<v1::EvaluatePointsRequest, v1::EvaluatePointsResponse>(Scope::kRead, kCompute,
                                                                    evaluate_points),
+      unary<v1::EvaluateCycleRequest, v1::EvaluateCycleResponse>(Scope::kRead, kCompute,
+                                                                 evaluate_cycle),
+      unary<v1::EvaluateProfilesRequest, v1::EvaluateProfilesResponse>(Scope::kRead, kHeavy,
+                                                                       evaluate_profiles),
       unary<v1::EvaluateRigRequest, v1::EvaluateRigResponse>(Scope::kRead, kCompute, evaluate_rig),
       unary<v1::EvaluateViscosityRequest, v1::EvaluateViscosityResponse>(Scope::kRead, kSearch,
                                                                          evaluate_viscosity),

@@ -12,7 +12,7 @@
 #include "server/mapping/history_columns.h"
 #include "server/resources/imports/import_gear_set.h"
 #include "server/resources/imports/import_lubricant.h"
-#include "server/resources/imports/import_surface.h"
+#include "server/resources/imports/read_profiles.h"
 #include "server/resources/provenance.h"
 #include "server/storage/resource_types.h"
 #include "tribodyn/v1/results.pb.h"

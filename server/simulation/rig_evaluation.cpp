@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <string>
@@ -9,10 +10,13 @@
 #include <vector>
 
 #include "core/refusal.h"
+#include "core/study/figure_limits.h"
+#include "core/study/range_sentences.h"
 #include "core/version.h"
 #include "server/contract/check_message.h"
 #include "server/mapping/to_core.h"
 #include "server/resources/lubricant_parameters.h"
+#include "server/simulation/fluid_grounds.h"
 #include "server/simulation/refused_rows.h"
 #include "server/simulation/study_checks.h"
 #include "tribodyn/v1/surfaces.pb.h"
@@ -139,6 +143,61 @@ std::vector<v1::RigCondition> conditions_of(const v1::EvaluateRigRequest& reques
   return out;
 }
 
+/// Where rows leave the ranges of the laws: the rows of each law, and the sentence of the row that
+/// is furthest outside.
+class RigWarnings {
+ public:
+  RigWarnings(const RigEvaluation& evaluation, v1::EvaluateRigResponse& out)
+      : scene_(evaluation.scene), grounds_(fluid_grounds(*evaluation.lubricant)), out_(out) {}
+
+  void add(int row, double inlet_temperature, const RigPoint& point) {
+    const double hottest = std::max(inlet_temperature, point.contact_temperature);
+    if (const auto& measured = grounds_.viscosity_measured) {
+      add(row, "VISCOSITY_TEMPERATURE", viscosity_sentence(grounds_, inlet_temperature, hottest),
+          std::max(measured->lowest - inlet_temperature, hottest - measured->highest));
+    }
+    add(row, "PRESSURE", pressure_sentence(point.maximum_pressure),
+        std::max(kLowestComparedPressure / point.maximum_pressure,
+                 point.maximum_pressure / kHighestComparedPressure));
+    if (scene_.roughness.asperity_density > 0) {
+      add(row, "FILM_RATIO", film_ratio_sentence(point.film_ratio), -point.film_ratio);
+      add(row, "ROUGHNESS_PRODUCT", roughness_product_sentence(scene_.roughness), 0);
+    }
+    add(row, "LIMITING_STRESS",
+        limiting_stress_sentence(grounds_, point.limiting_stress_area_share),
+        point.limiting_stress_area_share);
+    add(row, "COLD_INLET", cold_inlet_sentence(inlet_temperature, scene_.options),
+        -inlet_temperature);
+    add(row, "ISOTHERMAL", isothermal_sentence(scene_.options), 0);
+  }
+
+ private:
+  struct Furthest {
+    v1::RigRangeWarning* warning;
+    double excess;
+  };
+
+  void add(int row, const char* code, const std::string& sentence, double excess) {
+    if (sentence.empty()) return;
+    const auto [at, is_new] = known_.try_emplace(code);
+    Furthest& furthest = at->second;
+    if (is_new) {
+      furthest.warning = out_.add_range_warnings();
+      furthest.warning->set_code(code);
+    }
+    if (is_new || excess > furthest.excess) {
+      furthest.excess = excess;
+      furthest.warning->set_message(sentence);
+    }
+    furthest.warning->add_rows(row);
+  }
+
+  const RigScene& scene_;
+  FluidGrounds grounds_;
+  v1::EvaluateRigResponse& out_;
+  std::map<std::string, Furthest> known_;  // by code
+};
+
 }  // namespace
 
 std::optional<RigEvaluation> read_rig(const v1::EvaluateRigRequest& request,
@@ -200,6 +259,7 @@ v1::EvaluateRigResponse evaluate_rig(const v1::EvaluateRigRequest& request,
     (out.*each.column)()->Resize(rows, std::numeric_limits<double>::quiet_NaN());
   }
   RefusedRows refused(rows, *out.mutable_refusal_numbers(), *out.mutable_refusals());
+  RigWarnings warnings(evaluation, out);
   std::map<double, Rig> rigs;  // by supply temperature
   for (int i = 0; i < rows; ++i) {
     if (is_over()) throw Cancelled();
@@ -223,6 +283,7 @@ v1::EvaluateRigResponse evaluate_rig(const v1::EvaluateRigRequest& request,
       for (const RigColumn& each : kRigColumns) {
         (out.*each.column)()->Set(i, point.*each.figure);
       }
+      warnings.add(i, celsius + kZeroCelsius, point);
     } catch (const Refusal& refusal) {
       refused.add(i, refusal.reason(), refusal.what());
     }

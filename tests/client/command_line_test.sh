@@ -11,7 +11,7 @@ err_has 'cannot connect to the server at 127.0.0.1:9'
 expect 3 --server "unix:$folder/none" lubricants list
 expect 0 --help
 out_has 'Exit codes'
-for command in point curve compare explain report screen design sensitivities history spectrum contact viscosity traction film stribeck cycle paper diff validate \
+for command in point curve compare explain report screen design sensitivities history spectrum contact viscosity traction film stribeck cycle roughness paper diff validate \
   schema completion help "lubricants list" \
   "lubricants get" "lubricants create" "gear-sets update" "surfaces import" "vehicles export" \
   "jobs list" "jobs get" "jobs watch" "jobs wait" "jobs cancel" "jobs rerun" "campaigns list" \
@@ -197,7 +197,7 @@ energy_of() { awk -F, '$1 == "all" { print $5 }' "$folder/out"; }
 expect 0 cycle paper-fluid-1 paper-fluid-2 --plot "$folder/cycle.svg" --csv "$folder/pieces.csv"
 out_has '^all +1180 +11\.028 '
 out_has '^standstill +280 +0\.000 '
-out_has '^paper-fluid-2@1: estimated error of the map [0-9.]+ kJ, [0-9]+ points'
+out_has '^paper-fluid-2@1: estimated error of the map [0-9.]+ kJ, of the solver at most [0-9.]+ kJ, [0-9]+ points'
 stated=$(sed -nE 's/^paper-fluid-1@1: estimated error of the map ([0-9.]+) kJ.*/\1/p' "$folder/out")
 [ -s "$folder/cycle.svg" ] && [ "$(wc -l <"$folder/pieces.csv")" -eq 1181 ] || fail "tribodyn cycle: files"
 expect 0 cycle paper-fluid-1 --output csv
@@ -210,18 +210,55 @@ printf 'time_seconds,speed_kilometres_per_hour,ascent_angle_degrees\n0,0,0\n5,30
 expect 0 cycle paper-fluid-1 --cycle "$folder/own.csv" --output json
 out_is_json
 expect 0 cycle paper-fluid-1 --cycle "$folder/own.csv" --point-by-point
-out_has 'point by point, [0-9]+ points'
+out_has 'point by point, of the solver at most [0-9.]+ kJ, [0-9]+ points'
 printf 'time_seconds,speed_kilometres_per_hour\n0,0\n5,x\n' >"$folder/bad.csv"
 expect 1 cycle paper-fluid-1 --cycle "$folder/bad.csv"
 err_has "bad.csv, line 3, speed_kilometres_per_hour: 'x' is not a number"
 printf 'time_seconds,speed_kilometres_per_hour\n0,0\n5,-10\n' >"$folder/bad.csv"
 expect 1 cycle paper-fluid-1 --cycle "$folder/bad.csv"
-err_has 'place 2 of the cycle: the speed is negative'
-printf 'time_seconds,speed_kilometres_per_hour\n0,0\n1,100\n' >"$folder/bad.csv"
+err_has 'bad.csv, line 3, speed_kilometres_per_hour: speed_kilometres_per_hour = -10 km/h; allowed: 0 to 400'
+printf '# own\n\ntime_seconds,speed_kilometres_per_hour\n0,0\n5,20\n5,300\n5.5,10\n' >"$folder/bad.csv"
+expect 1 cycle paper-fluid-1 paper-fluid-11 --cycle "$folder/bad.csv"
+err_has 'did you mean "lubricants/paper-fluid-1"'
+err_has 'bad.csv, line 6, time_seconds: time_seconds = 5 s; allowed: above that of the place before, 5 s'
+err_has 'bad.csv, line 7, speed_kilometres_per_hour: .* acceleration of -161.1 m/s2; allowed: -50 to 50 m/s2'
+printf 'time_seconds,speed_kilometres_per_hour\n0,10\n' >"$folder/bad.csv"
 expect 1 cycle paper-fluid-1 --cycle "$folder/bad.csv"
-err_has 'slope of 45 degrees'
+err_has 'bad.csv: 1 place; allowed: two places or more'
+{ echo time_seconds,speed_kilometres_per_hour; seq 1000000 | sed 's/$/,50/'; } >"$folder/bad.csv"
+expect 1 cycle paper-fluid-1 --cycle "$folder/bad.csv"
+err_has 'bad.csv has 1000000 rows; allowed: at most 10000'
+printf 'time_seconds,speed_kilometres_per_hour,sump_temperature_celsius\n0,60,40\n60,60,90\n' >"$folder/own.csv"
+expect 0 cycle paper-fluid-1 --cycle "$folder/own.csv"
+out_has 'own.csv, sump 40.42 to 89.58 C: mesh loss'
 expect 2 cycle
 expect 2 cycle paper-fluid-1 --map-tolerance 1
+expect 2 cycle paper-fluid-1 --map-tolerance 0
+
+# Measured profiles: six are one surface, whose parameters move with the sampling interval.
+for place in heel middle toe; do
+  awk -v place="$place" 'BEGIN { srand(length(place)); z = 0; print "position_micrometres,height_nanometres"
+    for (i = 0; i < 1000; ++i) { print i "," z; z = 0.99 * z + 60 * (rand() - 0.5) } }' >"$folder/$place.csv"
+done
+expect 0 roughness {pinion,gear},axial,"$folder"/{heel,middle,toe}.csv --plot "$folder/roughness.svg"
+out_has '^pinion, axial +3 '
+out_has '^ +16 +16 .* ± '
+[ -s "$folder/roughness.svg" ] || fail "tribodyn roughness: plot"
+expect 0 roughness pinion,axial,"$folder/heel.csv" --sampling-steps 1,5 --output csv
+out_is_csv
+out_lines 3
+out_has '^sampling_step,spacing_metres,asperity_density_per_square_metre,.*,roughness_product,standard_uncertainty_'
+expect 0 roughness "$folder/heel.csv" --lambda-s 5 --output json
+out_is_json
+printf 'position_micrometres,height_nanometres\n0,1\n1,x\n2,1\n' >"$folder/bad.csv"
+expect 1 roughness "$folder/bad.csv"
+err_has 'bad.csv row 3 column height_nanometres'
+expect 1 roughness "$folder/heel.csv" --sampling-steps 1,500
+err_has 'allowed: 1 to 200'
+expect 2 roughness
+expect 2 roughness "$folder/heel.csv" --sampling-steps 1,x
+expect 2 roughness wheel,"$folder/heel.csv"
+err_has 'is not \[pinion|gear,\]'
 
 # Figures of the paper, by their numbers.
 expect 0 paper 10 --output "$folder/paper"

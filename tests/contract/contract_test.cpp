@@ -19,7 +19,8 @@
 #include "server/resources/accept_resource.h"
 #include "server/resources/gear_set_checks.h"
 #include "server/resources/imports/csv_table.h"
-#include "server/resources/imports/import_surface.h"
+#include "server/resources/imports/read_profiles.h"
+#include "server/simulation/cycle_evaluation.h"
 #include "tests/contract/breaking_changes.h"
 #include "tests/contract/lint.h"
 #include "tribodyn/v1/limits.pb.h"
@@ -136,6 +137,10 @@ TEST(Contract, StatesTheLimitsThatTheServerEnforces) {
   }
   EXPECT_EQ(items("LoadShareAtTorque.Slot", "load_share"), server::kMaximumFlankSamples);
   EXPECT_EQ(items("ImportSurfaceProfilesRequest", "profiles"), server::kMaximumProfiles);
+  EXPECT_EQ(items("EvaluateProfilesRequest", "profiles"), server::kMaximumProfiles);
+  EXPECT_EQ(items("EvaluateCycleRequest", "lubricants"), server::kMostCycleLubricants);
+  EXPECT_EQ(items("EvaluateCycleResponse", "start_seconds"), server::kMaximumCyclePieces);
+  EXPECT_EQ(items("CycleLubricant", "mesh_loss_power_watts"), server::kMaximumCyclePieces);
   EXPECT_EQ(items("Simulation", "labels"), server::kMaximumSimulationLabels);
   EXPECT_EQ(items("HistoryRequest", "columns"), server::kMaximumHistoryColumns);
   EXPECT_EQ(items("ReadHistoryRequest", "columns"), server::kMaximumHistoryColumns);

@@ -30,13 +30,13 @@ const std::set<std::string_view> kUnits = {"celsius", "degrees",   "hertz",   "h
                                            "second",  "seconds",   "squared", "watt",   "watts"};
 /// Also numbers whose unit another field of the message states.
 const std::set<std::string_view> kPureNumbers = {
-    "alpha",       "amplitudes", "beta",      "coefficient", "confidence", "correlation",
-    "cosine",      "coverage",   "defect",    "derivatives", "effect",     "elasticities",
-    "error",       "exponent",   "fraction",  "index",       "maximum",    "mean",
-    "minimum",     "multiplier", "order",     "orders",      "partition",  "phase",
-    "probability", "ratio",      "residual",  "share",       "sine",       "sliding",
-    "slope",       "solutions",  "tolerance", "uncertainty", "value",      "values",
-    "weights"};
+    "alpha",       "amplitudes", "beta",      "coefficient", "confidence",  "correlation",
+    "cosine",      "coverage",   "defect",    "derivatives", "effect",      "elasticities",
+    "error",       "exponent",   "fraction",  "index",       "maximum",     "mean",
+    "minimum",     "multiplier", "order",     "orders",      "partition",   "phase",
+    "probability", "product",    "ratio",     "residual",    "share",       "sine",
+    "sliding",     "slope",      "solutions", "tolerance",   "uncertainty", "value",
+    "values",      "weights"};
 /// Other spellings of units, and abbreviations.
 const std::regex kOtherSpellings(
     "(^|_)((kilo|milli|micro|nano|centi)?meters?|litres?|liters?|kelvins|centigrade|deg|rad|hz|kg|"

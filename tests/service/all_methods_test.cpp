@@ -167,6 +167,17 @@ TEST_P(EveryMethod, SuggestsTheNearestNameForAnUnknownOne) {
       set("lubricant", "lubricants/paper-fluid-11");
       return expect_refused(*message, "did you mean \"lubricants/paper-fluid-1\"?");
     }
+    if (method == "EvaluateCycle") {
+      message->GetReflection()->AddString(message.get(),
+                                          message->GetDescriptor()->FindFieldByName("lubricants"),
+                                          "lubricants/paper-fluid-11");
+      message->GetReflection()->SetEnumValue(
+          message.get(), message->GetDescriptor()->FindFieldByName("named_cycle"), 1);
+      return expect_refused(*message, "did you mean \"lubricants/paper-fluid-1\"?");
+    }
+    if (method == "EvaluateProfiles") {
+      return expect_refused(*message, "0 profiles; allowed: 1 to 24");
+    }
     if (method == "ComparePoints" || method == "ExplainPoints") {
       if (method == "ComparePoints") {
         message->GetReflection()->AddString(message.get(),

@@ -17,9 +17,11 @@
 #include "server/resources/imports/import_surface.h"
 #include "server/simulation/campaign_inputs.h"
 #include "server/simulation/contact_inputs.h"
+#include "server/simulation/cycle_evaluation.h"
 #include "server/simulation/point_comparison.h"
 #include "server/simulation/point_evaluation.h"
 #include "server/simulation/point_explanation.h"
+#include "server/simulation/profile_evaluation.h"
 #include "server/simulation/rig_evaluation.h"
 #include "server/simulation/simulation_inputs.h"
 #include "server/simulation/viscosity_evaluation.h"
@@ -96,6 +98,8 @@ struct Subject {
   v1::EvaluatePointsRequest points = one_point();
   v1::EvaluateRigRequest rig = one_rig();
   v1::EvaluateViscosityRequest viscosity;
+  v1::EvaluateCycleRequest cycle;
+  v1::EvaluateProfilesRequest profile_evaluation;
   v1::ReadSpectrumRequest spectrum;
   v1::ComparePointsRequest comparison;
   v1::ExplainPointsRequest explanation;
@@ -151,6 +155,17 @@ struct Subject {
       use(points.mutable_conditions(0), "conditions[0].");
     } else if (name == "EvaluateRigRequest") {
       use(&rig, "");
+    } else if (name == "EvaluateCycleRequest" || name == "CyclePlace") {
+      cycle.add_lubricants(points.lubricant());
+      for (const double seconds : {0.0, 60.0}) {
+        v1::CyclePlace& place = *cycle.add_places();
+        place.set_time_seconds(seconds);
+        place.set_speed_kilometres_per_hour(50);
+      }
+      use(&cycle, "");
+      if (name == "CyclePlace") use(cycle.mutable_places(0), "places[0].");
+    } else if (name == "EvaluateProfilesRequest") {
+      use(&profile_evaluation, "");
     } else if (name == "RigBody") {
       use(rig.mutable_body_1(), "body_1.");
     } else if (name == "RigCondition") {
@@ -240,6 +255,15 @@ struct Subject {
     Violations violations;
     if (message == &viscosity) {
       read_viscosity(viscosity, seed_lookup(), violations);
+      return violations;
+    }
+    if (message == &cycle || path == "places[0].") {
+      read_cycle(cycle, seed_lookup(), violations);
+      return violations;
+    }
+    if (message == &profile_evaluation) {
+      evaluate_profiles(
+          profile_evaluation, [] { return false; }, violations);
       return violations;
     }
     if (message == &rig || message == &rig.body_1() || path == "grid." ||

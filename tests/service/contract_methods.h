@@ -7,9 +7,11 @@
 
 #include "tribodyn/v1/campaigns.pb.h"
 #include "tribodyn/v1/contacts.pb.h"
+#include "tribodyn/v1/cycles.pb.h"
 #include "tribodyn/v1/gear_sets.pb.h"
 #include "tribodyn/v1/lubricants.pb.h"
 #include "tribodyn/v1/points.pb.h"
+#include "tribodyn/v1/profiles.pb.h"
 #include "tribodyn/v1/rigs.pb.h"
 #include "tribodyn/v1/schemas.pb.h"
 #include "tribodyn/v1/simulations.pb.h"
@@ -29,6 +31,8 @@ inline std::vector<const google::protobuf::MethodDescriptor*> all_methods() {
         v1::Simulation::descriptor()->file(), v1::Schema::descriptor()->file(),
         v1::EvaluateContactRequest::descriptor()->file(),
         v1::EvaluatePointsRequest::descriptor()->file(),
+        v1::EvaluateCycleRequest::descriptor()->file(),
+        v1::EvaluateProfilesRequest::descriptor()->file(),
         v1::EvaluateRigRequest::descriptor()->file(),
         v1::EvaluateViscosityRequest::descriptor()->file(),
         v1::ReadSpectrumRequest::descriptor()->file(), v1::Campaign::descriptor()->file()}) {

@@ -557,6 +557,16 @@ TEST_F(RestAndGrpc, EveryMethodGivesTheSameAnswers) {
   check("EvaluatePoints",
         "lubricant: 'lubricants/none' conditions { speed_kilometres_per_hour: 1 }",
         google::rpc::INVALID_ARGUMENT);
+  check("EvaluateCycle",
+        R"(lubricants: "lubricants/paper-fluid-1" lubricants: "lubricants/paper-fluid-2"
+      places { } places { time_seconds: 9 speed_kilometres_per_hour: 40 }
+      places { time_seconds: 12 speed_kilometres_per_hour: 40 ascent_angle_degrees: 1 })");
+  check("EvaluateCycle", R"(lubricants: "lubricants/paper-fluid-1"
+      places { time_seconds: 5 } places { time_seconds: 2 speed_kilometres_per_hour: -1 })",
+        google::rpc::INVALID_ARGUMENT);
+  check("EvaluateProfiles", R"(profiles { member: FLANK_MEMBER_PINION
+      csv: "position_micrometres,height_nanometres\n0,1\n2,5\n4,-3\n6,2\n8,-4\n10,1\n12,3\n" })");
+  check("EvaluateProfiles", "sampling_steps: 0", google::rpc::INVALID_ARGUMENT);
   check("EvaluateRig",
         R"(lubricant: "lubricants/paper-fluid-1" surface: "surfaces/run-in" radius_x_metres: 0.0127
       conditions { load_newtons: 38 entrainment_speed_metres_per_second: 2

@@ -53,19 +53,6 @@ TEST(DriveCycle, ACycleThatCannotBeDrivenIsRefusedAtItsPlace) {
   EXPECT_NE(refusal({"", {{0, 0}, {1, std::nan("")}}}).find("not finite"), std::string::npos);
 }
 
-TEST(DriveCycle, AscentForTorqueInvertsTheRoadLoad) {
-  const Vehicle car{1300, 0.0125, 0.3, 2.2, 1.225, 0.28, 9.81};
-  for (const double speed : {1.0, 15.0, 35.0}) {
-    for (const double acceleration : {-1.4, 0.0, 1.04}) {
-      const double torque = wheel_torque(car, speed, 0.02, acceleration);
-      const auto ascent = ascent_for_torque(car, speed, torque);
-      ASSERT_TRUE(ascent);
-      EXPECT_NEAR(wheel_torque(car, speed, *ascent, 0), torque, 1e-9 * std::abs(torque) + 1e-9);
-    }
-  }
-  EXPECT_FALSE(ascent_for_torque(car, 15, 1e5));
-}
-
 /// A loss that grows with torque, has a kink at none, and a narrow resonance.
 double smooth_loss(const MapPlace& place) {
   const double resonance = (place[0] - 20) / 1.5;

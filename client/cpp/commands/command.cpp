@@ -79,6 +79,7 @@ std::vector<Command> all_commands() {
   commands.push_back(film_command());
   commands.push_back(stribeck_command());
   commands.push_back(cycle_command());
+  commands.push_back(roughness_command());
   commands.push_back(paper_command());
   for (const ResourceKind& kind : resource_kinds()) {
     for (Command& command : resource_commands(kind)) commands.push_back(std::move(command));

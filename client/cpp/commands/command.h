@@ -70,6 +70,7 @@ Command viscosity_command();
 Command traction_command();
 Command film_command();
 Command stribeck_command();
+Command roughness_command();
 Command paper_command();
 Command cycle_command();
 Command compare_command();

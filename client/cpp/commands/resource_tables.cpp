@@ -12,28 +12,6 @@
 namespace tribodyn::client {
 namespace {
 
-/// Reads "pinion,axial,FILE"; member and direction may be missing.
-bool read_profile(const std::string& text, TableFiles::Profile& profile) {
-  std::vector<std::string> parts = split(text, ',');
-  if (parts.empty()) return false;
-  profile.path = parts.back();
-  parts.pop_back();
-  for (const std::string& part : parts) {
-    if (part == "pinion") {
-      profile.member = v1::FLANK_MEMBER_PINION;
-    } else if (part == "gear") {
-      profile.member = v1::FLANK_MEMBER_GEAR;
-    } else if (part == "axial") {
-      profile.direction = v1::PROFILE_DIRECTION_AXIAL;
-    } else if (part == "radial") {
-      profile.direction = v1::PROFILE_DIRECTION_RADIAL;
-    } else {
-      return false;
-    }
-  }
-  return !profile.path.empty();
-}
-
 /// Returns the name with revision, e.g. "surfaces/run-in@3", however the resource was requested.
 std::string revision_name(const google::protobuf::Message& resource) {
   const std::string name = text_field(resource, "name");
@@ -68,10 +46,7 @@ ResourcePointer send_with_tables(Connection& connection, const ResourceKind& kin
     request.mutable_surface()->CopyFrom(resource);
     request.set_surface_id(id);
     for (const TableFiles::Profile& table : tables.profiles) {
-      v1::SurfaceProfile& profile = *request.add_profiles();
-      profile.set_member(table.member);
-      profile.set_direction(table.direction);
-      profile.set_csv(read_table_file(table.path, kLargestTable));
+      *request.add_profiles() = profile_message(table);
     }
     request.set_levelling(tables.levelling);
     request.set_short_wave_cut_off_metres(tables.short_wave_cut_off_metres);
@@ -130,7 +105,37 @@ void replace_all(const std::string& from, const std::string& to, std::string& te
   }
 }
 
-/// Returns the error with the user's file names in place of the request's fields.
+}  // namespace
+
+bool read_profile(const std::string& text, TableFiles::Profile& profile) {
+  std::vector<std::string> parts = split(text, ',');
+  if (parts.empty()) return false;
+  profile.path = parts.back();
+  parts.pop_back();
+  for (const std::string& part : parts) {
+    if (part == "pinion") {
+      profile.member = v1::FLANK_MEMBER_PINION;
+    } else if (part == "gear") {
+      profile.member = v1::FLANK_MEMBER_GEAR;
+    } else if (part == "axial") {
+      profile.direction = v1::PROFILE_DIRECTION_AXIAL;
+    } else if (part == "radial") {
+      profile.direction = v1::PROFILE_DIRECTION_RADIAL;
+    } else {
+      return false;
+    }
+  }
+  return !profile.path.empty();
+}
+
+v1::SurfaceProfile profile_message(const TableFiles::Profile& profile) {
+  v1::SurfaceProfile out;
+  out.set_member(profile.member);
+  out.set_direction(profile.direction);
+  out.set_csv(read_table_file(profile.path, kLargestTable));
+  return out;
+}
+
 ServiceError with_file_names(const ServiceError& error, const TableFiles& tables) {
   std::vector<std::pair<std::string, std::string>> names = {
       {"viscosity_table_csv", tables.viscosity_table},
@@ -148,8 +153,6 @@ ServiceError with_file_names(const ServiceError& error, const TableFiles& tables
   }
   return {text, error.status_code(), error.reason(), violations, error.retry_delay_seconds()};
 }
-
-}  // namespace
 
 namespace {
 
@@ -173,6 +176,38 @@ void add_cut_off_flag(FlagList& flags, const char* name, const char* bare_unit,
 
 }  // namespace
 
+void add_profile_flags(FlagList& flags, const char* name, TableFiles& tables) {
+  Flag& profile = flags.raw(name, "[pinion|gear,][axial|radial,]FILE.csv",
+                            "A measured profile of a flank; repeatable. Several of one flank "
+                            "along one direction are averaged.");
+  profile.is_repeatable = true;
+  profile.read = [name, &tables](const std::vector<std::string>& texts, Complaints& complaints) {
+    for (const std::string& text : texts) {
+      if (!read_profile(text, tables.profiles.emplace_back())) {
+        complaints.push_back(std::string(name) + ": '" + printable(text) +
+                             "' is not [pinion|gear,][axial|radial,]FILE");
+      }
+    }
+  };
+  flags.choice("--levelling", {"mean", "least-squares-line"},
+               "Trend that is removed from a profile before the statistics. Default: "
+               "least-squares-line.",
+               [&tables](int index) {
+                 tables.levelling =
+                     index == 0 ? v1::LEVELLING_MEAN : v1::LEVELLING_LEAST_SQUARES_LINE;
+               });
+  add_cut_off_flag(flags, "--lambda-s", "um",
+                   "Remove waves shorter than this (noise of the instrument), e.g. 2.5",
+                   tables.short_wave_cut_off_metres);
+  add_cut_off_flag(flags, "--lambda-c", "mm",
+                   "Remove waves longer than this (waviness and form), e.g. 0.8",
+                   tables.long_wave_cut_off_metres);
+  flags.choice("--as-published", {"eq46"},
+               "Join two directions of a flank by eq 46 as the paper misprints it, sqrt(m_a + m_r) "
+               "instead of sqrt(m_a m_r), to see its effect.",
+               [&tables](int) { tables.eq46_as_published = true; });
+}
+
 void add_table_flags(FlagList& flags, const ResourceKind& kind, TableFiles& tables) {
   if (kind.word == "vehicles") return;
   flags.group("Tables (CSV; `tribodyn help files` describes their columns)");
@@ -188,36 +223,7 @@ void add_table_flags(FlagList& flags, const ResourceKind& kind, TableFiles& tabl
                "Fourier series of contact radii, mesh stiffness and transmission error.",
                [&](const std::string& path) { tables.series = path; });
   } else {
-    Flag& profile = flags.raw("--profile", "[pinion|gear,][axial|radial,]FILE.csv",
-                              "A measured profile of a flank; repeatable. Several of one flank "
-                              "along one direction are averaged.");
-    profile.is_repeatable = true;
-    profile.read = [&](const std::vector<std::string>& texts, Complaints& complaints) {
-      for (const std::string& text : texts) {
-        if (!read_profile(text, tables.profiles.emplace_back())) {
-          complaints.push_back("--profile: '" + printable(text) +
-                               "' is not [pinion|gear,][axial|radial,]FILE");
-        }
-      }
-    };
-    flags.choice("--levelling", {"mean", "least-squares-line"},
-                 "Trend that is removed from a profile before the statistics. Default: "
-                 "least-squares-line.",
-                 [&](int index) {
-                   tables.levelling =
-                       index == 0 ? v1::LEVELLING_MEAN : v1::LEVELLING_LEAST_SQUARES_LINE;
-                 });
-    add_cut_off_flag(flags, "--lambda-s", "um",
-                     "Remove waves shorter than this (noise of the instrument), e.g. 2.5",
-                     tables.short_wave_cut_off_metres);
-    add_cut_off_flag(flags, "--lambda-c", "mm",
-                     "Remove waves longer than this (waviness and form), e.g. 0.8",
-                     tables.long_wave_cut_off_metres);
-    flags.choice(
-        "--as-published", {"eq46"},
-        "Join two directions of a flank by eq 46 as the paper misprints it, sqrt(m_a + m_r) "
-        "instead of sqrt(m_a m_r), to see its effect.",
-        [&](int) { tables.eq46_as_published = true; });
+    add_profile_flags(flags, "--profile", tables);
   }
 }
 

@@ -38,6 +38,17 @@ struct TableFiles {
   }
 };
 
+/// Reads "pinion,axial,FILE"; member and direction may be missing. Returns false if the text is
+/// something else.
+bool read_profile(const std::string& text, TableFiles::Profile& profile);
+/// Reads the file of a profile. Throws Failure.
+v1::SurfaceProfile profile_message(const TableFiles::Profile& profile);
+/// Adds the flag or argument `name` for profiles, and what is done with them before their moments
+/// are formed. They write to `tables`, which must outlive them.
+void add_profile_flags(FlagList& flags, const char* name, TableFiles& tables);
+/// Returns the error with the user's file names in place of the request's fields.
+ServiceError with_file_names(const ServiceError& error, const TableFiles& tables);
+
 /// Adds the flags that name tables of this kind; vehicles have none. They write to `tables`, which
 /// must outlive them.
 void add_table_flags(FlagList& flags, const ResourceKind& kind, TableFiles& tables);

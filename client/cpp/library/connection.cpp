@@ -119,6 +119,8 @@ Connection::Connection(std::string address, std::chrono::duration<double> timeou
   services_->campaigns = v1::CampaignService::NewStub(services_->channel);
   services_->points = v1::PointService::NewStub(services_->channel);
   services_->contacts = v1::ContactService::NewStub(services_->channel);
+  services_->cycles = v1::CycleService::NewStub(services_->channel);
+  services_->profiles = v1::ProfileService::NewStub(services_->channel);
   services_->rigs = v1::RigService::NewStub(services_->channel);
   services_->spectra = v1::SpectrumService::NewStub(services_->channel);
   services_->viscosities = v1::ViscosityService::NewStub(services_->channel);
@@ -142,6 +144,16 @@ v1::Schema Connection::schema(const std::string& message) {
 v1::EvaluateContactResponse Connection::evaluate_contact(
     const v1::EvaluateContactRequest& request) {
   return services_->call(*services_->contacts, &v1::ContactService::Stub::EvaluateContact, request);
+}
+
+v1::EvaluateCycleResponse Connection::evaluate_cycle(const v1::EvaluateCycleRequest& request) {
+  return services_->call(*services_->cycles, &v1::CycleService::Stub::EvaluateCycle, request);
+}
+
+v1::EvaluateProfilesResponse Connection::evaluate_profiles(
+    const v1::EvaluateProfilesRequest& request) {
+  return services_->call(*services_->profiles, &v1::ProfileService::Stub::EvaluateProfiles,
+                         request);
 }
 
 v1::EvaluateRigResponse Connection::evaluate_rig(const v1::EvaluateRigRequest& request) {

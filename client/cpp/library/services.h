@@ -15,9 +15,11 @@
 #include "tribodyn/client/connection.h"
 #include "tribodyn/v1/campaigns.grpc.pb.h"
 #include "tribodyn/v1/contacts.grpc.pb.h"
+#include "tribodyn/v1/cycles.grpc.pb.h"
 #include "tribodyn/v1/gear_sets.grpc.pb.h"
 #include "tribodyn/v1/lubricants.grpc.pb.h"
 #include "tribodyn/v1/points.grpc.pb.h"
+#include "tribodyn/v1/profiles.grpc.pb.h"
 #include "tribodyn/v1/rigs.grpc.pb.h"
 #include "tribodyn/v1/schemas.grpc.pb.h"
 #include "tribodyn/v1/simulations.grpc.pb.h"
@@ -47,6 +49,8 @@ struct Connection::Services {
   std::unique_ptr<v1::SimulationService::Stub> simulations;
   std::unique_ptr<v1::CampaignService::Stub> campaigns;
   std::unique_ptr<v1::ContactService::Stub> contacts;
+  std::unique_ptr<v1::CycleService::Stub> cycles;
+  std::unique_ptr<v1::ProfileService::Stub> profiles;
   std::unique_ptr<v1::RigService::Stub> rigs;
   std::unique_ptr<v1::PointService::Stub> points;
   std::unique_ptr<v1::SpectrumService::Stub> spectra;

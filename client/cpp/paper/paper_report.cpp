@@ -264,7 +264,7 @@ CsvRow number_row(const PaperFigure& figure, const std::string& statement,
           {"value", shortest(evidence.value)}};
 }
 
-std::string json_quoted(const std::string& text) {
+std::string quoted_in_json(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
@@ -276,8 +276,8 @@ std::string json_quoted(const std::string& text) {
 std::string numbers_json(const std::vector<Evidence>& evidence) {
   std::string out = "[";
   for (const Evidence& each : evidence) {
-    out += (out.size() == 1 ? "" : ", ") + ("{\"quantity\": " + json_quoted(each.quantity)) +
-           ", \"unit\": " + json_quoted(each.unit) + ", \"at\": " + json_quoted(each.at) +
+    out += (out.size() == 1 ? "" : ", ") + ("{\"quantity\": " + quoted_in_json(each.quantity)) +
+           ", \"unit\": " + quoted_in_json(each.unit) + ", \"at\": " + quoted_in_json(each.at) +
            ", \"value\": " + shortest(each.value) + "}";
   }
   return out + "]";
@@ -337,13 +337,13 @@ std::string paper_json(const std::vector<PaperChapter>& chapters) {
   std::string out = "{\"figures\": [";
   for (const PaperChapter& chapter : chapters) {
     out += (&chapter == &chapters.front() ? "\n" : ",\n") +
-           (" {\"figure\": " + json_quoted(chapter.figure->name)) +
-           ", \"title\": " + json_quoted(chapter.figure->title) + ", \"findings\": [";
+           (" {\"figure\": " + quoted_in_json(chapter.figure->name)) +
+           ", \"title\": " + quoted_in_json(chapter.figure->title) + ", \"findings\": [";
     for (const Finding& finding : chapter.findings) {
       out += (&finding == &chapter.findings.front() ? "\n" : ",\n") +
-             ("  {\"statement\": " + json_quoted(finding.statement)) +
-             ", \"verdict\": " + json_quoted(verdict_text(finding.verdict)) +
-             ", \"rule\": " + json_quoted(finding.rule) +
+             ("  {\"statement\": " + quoted_in_json(finding.statement)) +
+             ", \"verdict\": " + quoted_in_json(verdict_text(finding.verdict)) +
+             ", \"rule\": " + quoted_in_json(finding.rule) +
              ", \"numbers\": " + numbers_json(finding.evidence) + "}";
     }
     out += "], \"variants\": " + numbers_json(chapter.variants) + "}";

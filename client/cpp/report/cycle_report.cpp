@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "client/cpp/plot/footer.h"
 #include "client/cpp/plot/panel.h"
@@ -13,112 +12,122 @@
 namespace tribodyn::client {
 namespace {
 
-constexpr double kSteady = 0.02;  // magnitude of acceleration up to which speed is steady [m/s2]
+/// Returns e.g. "drive, steady", "30 to 60 km/h".
+std::string part_name(const v1::CyclePart& part) {
+  const std::string low = significant(part.minimum_speed_kilometres_per_hour());
+  const std::string high = significant(part.maximum_speed_kilometres_per_hour());
+  switch (part.kind()) {
+    case v1::CYCLE_PART_KIND_ALL:
+      return "all";
+    case v1::CYCLE_PART_KIND_STANDSTILL:
+      return "standstill";
+    case v1::CYCLE_PART_KIND_DRIVE:
+      return "drive";
+    case v1::CYCLE_PART_KIND_DRIVE_ACCELERATING:
+      return "drive, accelerating";
+    case v1::CYCLE_PART_KIND_DRIVE_STEADY:
+      return "drive, steady";
+    case v1::CYCLE_PART_KIND_DRIVE_DECELERATING:
+      return "drive, decelerating";
+    case v1::CYCLE_PART_KIND_COAST:
+      return "coast and braking";
+    default:
+      return high == "0" ? "above " + low + " km/h" : low + " to " + high + " km/h";
+  }
+}
 
-/// Pieces of a cycle that have something in common.
-struct CyclePart {
-  std::string name;
-  double seconds = 0, metres = 0;
-  std::vector<double> input_joules, loss_joules;  // by lubricant
-};
+std::string cycle_oil(const v1::CycleLubricant& lubricant) {
+  const std::string& revision = lubricant.lubricant_revision();
+  return revision.substr(revision.find('/') + 1);
+}
 
-CyclePart part_of(const CycleRun& run, const std::string& name,
-                  const std::function<bool(std::size_t)>& belongs) {
-  CyclePart out;
-  out.name = name;
-  out.input_joules.resize(run.fluids.size());
-  out.loss_joules.resize(run.fluids.size());
-  for (std::size_t i = 0; i < run.pieces.size(); ++i) {
-    if (!belongs(i)) continue;
-    out.seconds += run.pieces[i].duration;
-    out.metres += run.pieces[i].duration * run.pieces[i].speed;
-    for (std::size_t k = 0; k < run.fluids.size(); ++k) {
-      const double loss = run.fluids[k].loss_joules[i], wheel = run.wheel_energies[i];
-      out.loss_joules[k] += loss;
-      // In drive the pinion supplies what the wheels take and the loss, in coast the wheels.
-      out.input_joules[k] += wheel > 0 ? wheel + loss : -wheel;
+/// Returns e.g. "sump 40 C", "sump 20 to 80 C".
+std::string sump_text(const v1::EvaluateCycleResponse& answer) {
+  const auto [low, high] = std::minmax_element(answer.sump_temperature_celsius().begin(),
+                                               answer.sump_temperature_celsius().end());
+  const std::string from = significant(*low, 4), to = significant(*high, 4);
+  return "sump " + (from == to ? from : from + " to " + to) + " C";
+}
+
+/// Returns the figure, or the sign for none.
+std::string figure_or_dash(double figure, int digits) {
+  return std::isnan(figure) ? "-" : significant(figure, digits);
+}
+
+CsvRow csv_row_of(const v1::EvaluateCycleResponse& answer, int i) {
+  const v1::CyclePart& part = answer.parts(i);
+  CsvRow out{{"part", part_name(part)},
+             {"time_seconds", shortest(part.duration_seconds())},
+             {"distance_metres", shortest(part.distance_metres())}};
+  for (const v1::CycleLubricant& lubricant : answer.lubricants()) {
+    const std::string start = cycle_oil(lubricant) + "_";
+    const auto add = [&](const char* name, double figure) {
+      out.emplace_back(start + name, shortest(figure));
+    };
+    const bool is_refused = lubricant.parts().empty();
+    const v1::CyclePartLoss none;
+    const v1::CyclePartLoss& loss = is_refused ? none : lubricant.parts(i);
+    if (is_refused) {
+      for (const char* name : {"input_joules", "loss_joules", "inefficiency_percent"}) {
+        out.emplace_back(start + name, "");
+      }
+      continue;
     }
+    add("input_joules", loss.input_joules());
+    add("loss_joules", loss.loss_joules());
+    add("inefficiency_percent", loss.inefficiency_percent());
   }
   return out;
 }
 
-std::vector<CyclePart> parts_of(const CycleRun& run) {
-  const auto& pieces = run.pieces;
-  const auto moves = [&](std::size_t i) { return run.wheel_energies[i] != 0; };
-  const auto drives = [&](std::size_t i) { return run.wheel_energies[i] > 0; };
-  std::vector<CyclePart> out;
-  out.push_back(part_of(run, "all", [](std::size_t) { return true; }));
-  out.push_back(part_of(run, "standstill", [&](std::size_t i) { return !moves(i); }));
-  out.push_back(part_of(run, "drive, accelerating", [&](std::size_t i) {
-    return drives(i) && pieces[i].acceleration > kSteady;
-  }));
-  out.push_back(part_of(run, "drive, steady", [&](std::size_t i) {
-    return drives(i) && std::abs(pieces[i].acceleration) <= kSteady;
-  }));
-  out.push_back(part_of(run, "drive, decelerating", [&](std::size_t i) {
-    return drives(i) && pieces[i].acceleration < -kSteady;
-  }));
-  out.push_back(
-      part_of(run, "coast and braking", [&](std::size_t i) { return run.wheel_energies[i] < 0; }));
-  constexpr double kBands[] = {0, 30, 60, 90, 130, 1000};  // [km/h]
-  for (std::size_t k = 0; k + 1 < std::size(kBands); ++k) {
-    const bool is_last = k + 2 == std::size(kBands);
-    CyclePart band =
-        part_of(run,
-                is_last ? "above " + significant(kBands[k]) + " km/h"
-                        : significant(kBands[k]) + " to " + significant(kBands[k + 1]) + " km/h",
-                [&](std::size_t i) {
-                  const double speed = 3.6 * pieces[i].speed;
-                  return moves(i) && speed >= kBands[k] && speed < kBands[k + 1];
-                });
-    if (band.seconds > 0) out.push_back(std::move(band));
+void add_cells(const v1::CycleLubricant& lubricant, int part, bool is_first,
+               std::vector<std::string>& row) {
+  if (lubricant.parts().empty()) {
+    row.insert(row.end(), is_first ? 3 : 4, "-");
+    return;
   }
-  return out;
+  const v1::CyclePartLoss& loss = lubricant.parts(part);
+  row.push_back(significant(1e-3 * loss.loss_joules(), 4));
+  row.push_back(fixed(loss.loss_share_percent(), 1));
+  row.push_back(figure_or_dash(loss.inefficiency_percent(), 4));
+  if (is_first) return;
+  const double difference = loss.loss_difference_percent();
+  row.push_back(std::isnan(difference) ? "-" : signed_fixed(difference, 2));
 }
 
-std::string id_of(const CycleLosses& fluid) {
-  return fluid.lubricant.substr(fluid.lubricant.find('/') + 1);
-}
-
-double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
-
-CsvRow csv_row_of(const CyclePart& part, const CycleRun& run) {
-  CsvRow out{{"part", part.name},
-             {"time_seconds", shortest(part.seconds)},
-             {"distance_metres", shortest(part.metres)}};
-  for (std::size_t k = 0; k < run.fluids.size(); ++k) {
-    const std::string start = id_of(run.fluids[k]) + "_";
-    out.emplace_back(start + "input_joules", shortest(part.input_joules[k]));
-    out.emplace_back(start + "loss_joules", shortest(part.loss_joules[k]));
-    out.emplace_back(start + "inefficiency_percent",
-                     shortest(percent(part.loss_joules[k], part.input_joules[k])));
+/// Returns e.g. "my-oil@1: estimated error of the map 0.13 kJ, of the solver 0.04 kJ, 583 points".
+std::string error_text(const v1::CycleLubricant& lubricant) {
+  std::string out = cycle_oil(lubricant) + ": ";
+  if (!lubricant.refusal_reason().empty()) {
+    return out + "refused: " + lubricant.refusal_message() + "\n";
   }
-  return out;
-}
-
-std::string json_of_parts(const std::vector<CyclePart>& parts, const CycleRun& run) {
-  std::string out = "{\"parts\": [";
-  for (const CyclePart& part : parts) {
-    out += &part == &parts.front() ? "\n {" : ",\n {";
-    bool is_text = true;  // the name of the part; numbers follow
-    for (const auto& [name, value] : csv_row_of(part, run)) {
-      out +=
-          (is_text ? "" : ", ") + ("\"" + name + "\": ") + (is_text ? "\"" + value + "\"" : value);
-      is_text = false;
-    }
-    out += "}";
-  }
-  return out + "\n]}\n";
+  out += lubricant.map_error_joules() > 0
+             ? "estimated error of the map " + significant(1e-3 * lubricant.map_error_joules(), 2) +
+                   " kJ, "
+             : std::string("point by point, ");
+  out += std::isnan(lubricant.solver_error_joules())
+             ? std::string("of the solver not known, ")
+             : "of the solver at most " + significant(1e-3 * lubricant.solver_error_joules(), 2) +
+                   " kJ, ";
+  return out + std::to_string(lubricant.points()) + " points\n";
 }
 
 }  // namespace
 
+std::string cycle_refusals(const CycleRun& run) {
+  std::string out;
+  for (const v1::CycleLubricant& each : run.answer.lubricants()) {
+    if (!each.refusal_reason().empty()) out += error_text(each);
+  }
+  return out;
+}
+
 std::string cycle_text(const CycleRun& run, OutputFormat format) {
-  const std::vector<CyclePart> parts = parts_of(run);
-  if (format == OutputFormat::kJson) return json_of_parts(parts, run);
+  const v1::EvaluateCycleResponse& answer = run.answer;
+  if (format == OutputFormat::kJson) return json_text(answer);
   if (format == OutputFormat::kCsv) {
     std::vector<CsvRow> rows;
-    for (const CyclePart& part : parts) rows.push_back(csv_row_of(part, run));
+    for (int i = 0; i < answer.parts_size(); ++i) rows.push_back(csv_row_of(answer, i));
     return csv_text(rows);
   }
   using enum Table::Align;
@@ -126,39 +135,28 @@ std::string cycle_text(const CycleRun& run, OutputFormat format) {
                                      {"time", "s", kDecimal},
                                      {"distance", "km", kDecimal},
                                      {"energy in", "kJ", kDecimal}};
-  for (const CycleLosses& fluid : run.fluids) {
-    columns.push_back({"loss, kJ", id_of(fluid), kDecimal});
+  for (int k = 0; k < answer.lubricants_size(); ++k) {
+    columns.push_back({"loss, kJ", cycle_oil(answer.lubricants(k)), kDecimal});
     columns.push_back({"share, %", "", kDecimal});
     columns.push_back({"inefficiency, %", "", kDecimal});
-    if (&fluid != &run.fluids.front()) columns.push_back({"difference, %", "", kDecimal});
+    if (k > 0) columns.push_back({"difference, %", "", kDecimal});
   }
   Table table(columns);
-  for (const CyclePart& part : parts) {
-    std::vector<std::string> row{part.name, significant(part.seconds, 5),
-                                 fixed(1e-3 * part.metres, 3),
-                                 significant(1e-3 * part.input_joules.front(), 5)};
-    for (std::size_t k = 0; k < run.fluids.size(); ++k) {
-      const double loss = part.loss_joules[k];
-      row.push_back(significant(1e-3 * loss, 4));
-      row.push_back(fixed(percent(loss, parts.front().loss_joules[k]), 1));
-      row.push_back(significant(percent(loss, part.input_joules[k]), 4));
-      if (k > 0) {
-        const double first = part.loss_joules.front();
-        row.push_back(first > 0 ? signed_fixed(100 * (loss / first - 1), 2) : "-");
-      }
+  for (int i = 0; i < answer.parts_size(); ++i) {
+    const v1::CyclePart& part = answer.parts(i);
+    const v1::CycleLubricant& first = answer.lubricants(0);
+    std::vector<std::string> row{
+        part_name(part), significant(part.duration_seconds(), 5),
+        fixed(1e-3 * part.distance_metres(), 3),
+        first.parts().empty() ? "-" : significant(1e-3 * first.parts(i).input_joules(), 5)};
+    for (int k = 0; k < answer.lubricants_size(); ++k) {
+      add_cells(answer.lubricants(k), i, k == 0, row);
     }
     table.add_row(std::move(row));
   }
-  std::string out = run.name + ", sump " + significant(run.sump_temperature_celsius) +
-                    " C: mesh loss, quasi-steady\n\n" + table.text() + "\n";
-  for (const CycleLosses& fluid : run.fluids) {
-    out += id_of(fluid) + ": ";
-    out += fluid.estimated_error_joules > 0
-               ? "estimated error of the map " +
-                     significant(1e-3 * fluid.estimated_error_joules, 2) + " kJ, "
-               : std::string("point by point, ");
-    out += std::to_string(fluid.points) + " points, " + fluid.model_version + "\n";
-  }
+  std::string out = run.name + ", " + sump_text(answer) + ": mesh loss, quasi-steady, " +
+                    answer.model_version() + "\n\n" + table.text() + "\n";
+  for (const v1::CycleLubricant& each : answer.lubricants()) out += error_text(each);
   return out + wrapped(
                    "Energy in: at the pinion in drive, at the wheels in coast, where the axle "
                    "counts as transmitting all of the braking. Standstill: speeds below 0.1 km/h.",
@@ -166,16 +164,21 @@ std::string cycle_text(const CycleRun& run, OutputFormat format) {
 }
 
 std::string cycle_pieces_csv(const CycleRun& run) {
+  const v1::EvaluateCycleResponse& answer = run.answer;
   std::vector<CsvRow> rows;
-  for (std::size_t i = 0; i < run.pieces.size(); ++i) {
-    const CyclePiece& piece = run.pieces[i];
-    CsvRow row{{"start_seconds", shortest(piece.start)},
-               {"duration_seconds", shortest(piece.duration)},
-               {"speed_kilometres_per_hour", shortest(3.6 * piece.speed)},
-               {"acceleration_metres_per_second_squared", shortest(piece.acceleration)},
-               {"wheel_torque_newton_metres", shortest(run.wheel_torques[i])}};
-    for (const CycleLosses& fluid : run.fluids) {
-      row.emplace_back(id_of(fluid) + "_loss_joules", shortest(fluid.loss_joules[i]));
+  for (int i = 0; i < answer.start_seconds_size(); ++i) {
+    CsvRow row{{"start_seconds", shortest(answer.start_seconds(i))},
+               {"duration_seconds", shortest(answer.piece_seconds(i))},
+               {"speed_kilometres_per_hour", shortest(answer.speed_kilometres_per_hour(i))},
+               {"acceleration_metres_per_second_squared",
+                shortest(answer.acceleration_metres_per_second_squared(i))},
+               {"sump_temperature_celsius", shortest(answer.sump_temperature_celsius(i))},
+               {"wheel_torque_newton_metres", shortest(answer.wheel_torque_newton_metres(i))}};
+    for (const v1::CycleLubricant& each : answer.lubricants()) {
+      row.emplace_back(cycle_oil(each) + "_loss_joules",
+                       each.mesh_loss_power_watts().empty()
+                           ? ""
+                           : shortest(each.mesh_loss_power_watts(i) * answer.piece_seconds(i)));
     }
     rows.push_back(std::move(row));
   }
@@ -191,28 +194,30 @@ std::string cycle_plot(const CycleRun& run) {
   Series driven;
   driven.colour = "#444444";
   driven.width = 1.6;
-  for (const CyclePiece& piece : run.pieces) {
-    driven.x.push_back(piece.start + 0.5 * piece.duration);
-    driven.y.push_back(3.6 * piece.speed);
+  const v1::EvaluateCycleResponse& answer = run.answer;
+  for (int i = 0; i < answer.start_seconds_size(); ++i) {
+    driven.x.push_back(answer.start_seconds(i) + 0.5 * answer.piece_seconds(i));
+    driven.y.push_back(answer.speed_kilometres_per_hour(i));
   }
   speed.series.push_back(driven);
-  for (std::size_t k = 0; k < run.fluids.size(); ++k) {
+  for (int k = 0; k < answer.lubricants_size(); ++k) {
+    const v1::CycleLubricant& lubricant = answer.lubricants(k);
+    if (!lubricant.refusal_reason().empty()) continue;
     Series series;
-    series.colour = look_of(k).colour;
+    series.colour = look_of(static_cast<std::size_t>(k)).colour;
     series.width = 1.6;
-    series.label = id_of(run.fluids[k]);
+    series.label = cycle_oil(lubricant);
     series.x = driven.x;
-    for (std::size_t i = 0; i < run.pieces.size(); ++i) {
-      series.y.push_back(run.fluids[k].loss_joules[i] / run.pieces[i].duration);
-    }
+    series.y.assign(lubricant.mesh_loss_power_watts().begin(),
+                    lubricant.mesh_loss_power_watts().end());
     loss.series.push_back(std::move(series));
   }
   loss.shows_samples = true;
-  const std::vector<std::string> below = footer_lines(
-      {"Quasi-steady points of a drive cycle; sump " + significant(run.sump_temperature_celsius) +
-       " C; model version " + run.fluids.front().model_version +
-       ". Loss at the tooth contact only; it excludes bearings, churning and seals."},
-      kWidth - 2 * kLeft);
+  const std::vector<std::string> below =
+      footer_lines({"Quasi-steady points of a drive cycle; " + sump_text(answer) +
+                    "; model version " + answer.model_version() +
+                    ". Loss at the tooth contact only; it excludes bearings, churning and seals."},
+                   kWidth - 2 * kLeft);
   const double footer_top = kFirstTop + kPitch + 220 + 66;
   Svg svg(kWidth, footer_top + kFooterPitch * static_cast<double>(below.size()));
   svg.text({kLeft, 36}, "Drive cycle: " + run.name, {17, "start", "#111", true, 0});

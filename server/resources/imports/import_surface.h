@@ -26,9 +26,4 @@ std::optional<v1::Surface> import_surface(const v1::ImportSurfaceProfilesRequest
 /// Returns warnings about the profiles of a surface; none if the client set its parameters.
 std::vector<v1::RangeWarning> surface_warnings(const v1::Surface& surface);
 
-/// Returns the allowed headers of a profile.
-std::vector<std::string> profile_headers();
-
-inline constexpr int kMaximumProfiles = 24;  ///< two members, two directions, six repeats
-
 }  // namespace tribodyn::server

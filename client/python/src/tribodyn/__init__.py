@@ -8,6 +8,7 @@
 """
 
 from tribodyn._frames import Table
+from tribodyn._profiles import Profile
 from tribodyn._studies import Options
 from tribodyn.client import Campaign, Client, Resources
 from tribodyn.errors import TribodynError, Violation
@@ -17,6 +18,7 @@ __all__ = [
     "Campaign",
     "Client",
     "Options",
+    "Profile",
     "Quantity",
     "QuantityError",
     "Resources",

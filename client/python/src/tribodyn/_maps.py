@@ -102,7 +102,11 @@ async def rig(
         if each.label == each.LABEL_REPEATED and each.cpp_type == each.CPPTYPE_DOUBLE:
             columns.setdefault(each.name, np.array(getattr(answer, each.name)))
     columns["status"], columns["status_message"] = _statuses(answer)
-    return frame(columns, _attrs(answer))
+    warnings = {
+        each.code: {"message": each.message, "rows": list(each.rows)}
+        for each in answer.range_warnings
+    }
+    return frame(columns, {**_attrs(answer), "range_warnings": warnings})
 
 
 async def spectrum(

@@ -16,9 +16,11 @@ from tribodyn.settings import DEFAULT_PROJECT, Settings
 from tribodyn.v1 import (
     campaigns_pb2,
     contacts_pb2,
+    cycles_pb2,
     gear_sets_pb2,
     lubricants_pb2,
     points_pb2,
+    profiles_pb2,
     rigs_pb2,
     schemas_pb2,
     simulations_pb2,
@@ -31,9 +33,11 @@ from tribodyn.v1 import (
 _FILES = (
     campaigns_pb2,
     contacts_pb2,
+    cycles_pb2,
     gear_sets_pb2,
     lubricants_pb2,
     points_pb2,
+    profiles_pb2,
     rigs_pb2,
     schemas_pb2,
     simulations_pb2,

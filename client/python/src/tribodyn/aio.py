@@ -4,10 +4,11 @@ them."""
 from __future__ import annotations
 
 import os
+from pathlib import Path
 from types import TracebackType
 from typing import Any, Callable, Mapping, Sequence
 
-from tribodyn import _maps, _points, _studies, _uncertainty
+from tribodyn import _cycles, _maps, _points, _profiles, _studies, _uncertainty
 from tribodyn._campaigns import AsyncCampaign, start_campaign
 from tribodyn._columns import read_columns
 from tribodyn._csv import rows_of
@@ -22,6 +23,7 @@ from tribodyn._frames import (
     sensitivity_table,
 )
 from tribodyn._jobs import Outcome, run_all
+from tribodyn._profiles import Profile
 from tribodyn._progress import Progress
 from tribodyn._resources import AsyncResources
 from tribodyn._studies import Arguments, Options, full_name
@@ -350,6 +352,59 @@ class Client:
             temperatures_celsius,
             pressures_pascals,
             model_options or {},
+        )
+
+    async def cycle(
+        self,
+        lubricants: str | Sequence[str],
+        *,
+        cycle: Any = "nedc",
+        sump_temperature_celsius: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        map_tolerance: float | None = None,
+        tolerance: float | None = None,
+        point_by_point: bool = False,
+        sheared: bool = False,
+        model_options: Mapping[str, Any] | None = None,
+    ) -> Frame:
+        quantities = {
+            "sump_temperature_celsius": sump_temperature_celsius,
+            "inlet_temperature_rise_kelvin": inlet_temperature_rise_kelvin,
+            "map_tolerance": map_tolerance,
+            "tolerance": tolerance,
+        }
+        return await _cycles.evaluated(
+            self._transport,
+            lubricants,
+            cycle=cycle,
+            quantities=quantities,
+            hardware={"gear_set": gear_set, "surface": surface, "vehicle": vehicle},
+            point_by_point=point_by_point,
+            sheared=sheared,
+            model_options=model_options or {},
+        )
+
+    async def roughness(
+        self,
+        profiles: Profile | str | Path | Sequence[Profile | str | Path],
+        *,
+        levelling: str | None = None,
+        short_wave_cut_off_metres: Quantity | None = None,
+        long_wave_cut_off_metres: Quantity | None = None,
+        eq46_square_root_of_sum: bool = False,
+        sampling_steps: Sequence[int] = (),
+    ) -> Frame:
+        return await _profiles.evaluated(
+            self._transport,
+            profiles,
+            levelling=levelling,
+            short_wave_cut_off_metres=short_wave_cut_off_metres,
+            long_wave_cut_off_metres=long_wave_cut_off_metres,
+            eq46_square_root_of_sum=eq46_square_root_of_sum,
+            sampling_steps=sampling_steps,
         )
 
     async def rig(

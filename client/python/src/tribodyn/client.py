@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import atexit
 import threading
+from pathlib import Path
 from types import TracebackType
 from typing import Any, Coroutine, Generic, Iterator, List, Mapping, Sequence, TypeVar
 
@@ -14,6 +15,7 @@ from tribodyn import aio
 from tribodyn._campaigns import AsyncCampaign
 from tribodyn._frames import Frame
 from tribodyn._resources import AsyncResources
+from tribodyn._profiles import Profile
 from tribodyn._studies import Options
 from tribodyn.units import Quantity
 from tribodyn.v1.campaigns_pb2 import Campaign as CampaignMessage
@@ -700,6 +702,79 @@ class Client:
                 temperatures_celsius=temperatures_celsius,
                 pressures_pascals=pressures_pascals,
                 model_options=model_options,
+            )
+        )
+
+    def cycle(
+        self,
+        lubricants: str | Sequence[str],
+        *,
+        cycle: Any = "nedc",
+        sump_temperature_celsius: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        map_tolerance: float | None = None,
+        tolerance: float | None = None,
+        point_by_point: bool = False,
+        sheared: bool = False,
+        model_options: Mapping[str, Any] | None = None,
+    ) -> Frame:
+        """Returns what one to eight lubricants lose over a drive cycle: one row for each lubricant
+        and part of the cycle (all, standstill, drive and its phases, coast, ranges of speed).
+
+        ``cycle`` is "nedc", a CSV file or a table with the columns time_seconds,
+        speed_kilometres_per_hour (0 to 400) and, optionally, ascent_angle_degrees and
+        sump_temperature_celsius: 2 to 10,000 rows, at most 20,000 s. Points are quasi-steady, from an
+        adaptive map: ``map_tolerance`` (1e-5 to 0.1; None: 2e-3) is the wanted relative error of the
+        energy lost, or each piece of at most 1 s is solved, ``point_by_point``. ``attrs`` holds
+        ``whole``, the energies with their errors, and ``pieces``, speed, torque and loss over time.
+        A lubricant that the model refuses has NaN, and the reason in ``status``."""
+        return _LOOP.run(
+            self._client.cycle(
+                lubricants,
+                cycle=cycle,
+                sump_temperature_celsius=sump_temperature_celsius,
+                inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+                gear_set=gear_set,
+                surface=surface,
+                vehicle=vehicle,
+                map_tolerance=map_tolerance,
+                tolerance=tolerance,
+                point_by_point=point_by_point,
+                sheared=sheared,
+                model_options=model_options,
+            )
+        )
+
+    def roughness(
+        self,
+        profiles: Profile | str | Path | Sequence[Profile | str | Path],
+        *,
+        levelling: str | None = None,
+        short_wave_cut_off_metres: Quantity | None = None,
+        long_wave_cut_off_metres: Quantity | None = None,
+        eq46_square_root_of_sum: bool = False,
+        sampling_steps: Sequence[int] = (),
+    ) -> Frame:
+        """Returns the surface that measured profiles make, eqs 45 to 48, by the sampling interval: one
+        row for each, with the standard uncertainties that the spread of repeats makes.
+
+        ``profiles`` are Profile objects, or CSV files as texts, "pinion,axial,heel.csv"; repeats of a
+        member and direction are averaged. ``levelling``: "least-squares-line" or "mean"; the cut-offs
+        are those of a Gaussian filter (ISO 16610-21). ``sampling_steps``: every which height is taken;
+        empty: 1, 2, 3, 4, 6, 8, 12 and so on while 50 heights are left. ``attrs`` holds the
+        moments of each profile (``measurements``), of each member and direction (``groups``), and
+        ``warnings``."""
+        return _LOOP.run(
+            self._client.roughness(
+                profiles,
+                levelling=levelling,
+                short_wave_cut_off_metres=short_wave_cut_off_metres,
+                long_wave_cut_off_metres=long_wave_cut_off_metres,
+                eq46_square_root_of_sum=eq46_square_root_of_sum,
+                sampling_steps=sampling_steps,
             )
         )
 

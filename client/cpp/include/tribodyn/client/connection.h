@@ -13,9 +13,11 @@
 #include "tribodyn/client/error.h"
 #include "tribodyn/v1/campaigns.pb.h"
 #include "tribodyn/v1/contacts.pb.h"
+#include "tribodyn/v1/cycles.pb.h"
 #include "tribodyn/v1/gear_sets.pb.h"
 #include "tribodyn/v1/lubricants.pb.h"
 #include "tribodyn/v1/points.pb.h"
+#include "tribodyn/v1/profiles.pb.h"
 #include "tribodyn/v1/purge_report.pb.h"
 #include "tribodyn/v1/rigs.pb.h"
 #include "tribodyn/v1/schemas.pb.h"
@@ -292,6 +294,11 @@ class Connection {
   v1::PromoteCandidateResponse promote_candidate(const v1::PromoteCandidateRequest& request);
 
   v1::EvaluateContactResponse evaluate_contact(const v1::EvaluateContactRequest& request);
+
+  /// Adds up the mesh loss of lubricants over a drive cycle and stores nothing.
+  v1::EvaluateCycleResponse evaluate_cycle(const v1::EvaluateCycleRequest& request);
+  /// Returns the surface that measured profiles make, by their sampling interval.
+  v1::EvaluateProfilesResponse evaluate_profiles(const v1::EvaluateProfilesRequest& request);
 
   v1::EvaluateRigResponse evaluate_rig(const v1::EvaluateRigRequest& request);
   /// Evaluates the viscosity of a lubricant over temperature and pressure.

@@ -1,0 +1,134 @@
+"""Drive cycles: what lubricants lose over them. The server keeps none of them."""
+
+from __future__ import annotations
+
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+
+from tribodyn._csv import rows_of
+from tribodyn._frames import Frame, enum_word, frame, in_columns
+from tribodyn._studies import Arguments, full_name, set_switches
+from tribodyn._transport import Transport
+from tribodyn.units import Quantity
+from tribodyn.v1 import cycles_pb2 as pb
+
+_NEDC = "nedc"
+_FIGURES = (
+    "input_joules",
+    "loss_joules",
+    "loss_share_percent",
+    "inefficiency_percent",
+    "loss_difference_percent",
+)
+# Columns of the answer by piece; the losses of the lubricants follow.
+_PIECE_COLUMNS = (
+    "start_seconds",
+    "piece_seconds",
+    "speed_kilometres_per_hour",
+    "acceleration_metres_per_second_squared",
+    "ascent_angle_degrees",
+    "sump_temperature_celsius",
+    "wheel_torque_newton_metres",
+)
+
+
+def _set_cycle(arguments: Arguments, cycle: Any, request: pb.EvaluateCycleRequest) -> None:
+    """Sets a cycle by its name, or the places of a table or CSV file."""
+    if isinstance(cycle, str) and cycle.lower() == _NEDC:
+        request.named_cycle = pb.NAMED_CYCLE_NEDC
+        return
+    names = [each.name for each in pb.CyclePlace.DESCRIPTOR.fields]
+    unknown: set[str] = set()
+    for i, row in enumerate(rows_of(cycle)):
+        place = request.places.add()
+        for name, value in row.items():
+            if name not in names:
+                unknown.add(name)
+            elif value is not None:
+                setattr(place, name, arguments.number(f"places[{i}].{name}", value))
+    for name in sorted(unknown):
+        arguments.wrong("cycle", f"unknown column {name}; allowed: {', '.join(names)}")
+
+
+async def evaluated(
+    transport: Transport,
+    lubricants: str | Sequence[str],
+    *,
+    cycle: Any,
+    quantities: Mapping[str, Quantity | None],
+    hardware: Mapping[str, str | None],
+    point_by_point: bool,
+    sheared: bool,
+    model_options: Mapping[str, Any],
+) -> Frame:
+    """Returns one row for each lubricant and part of the cycle."""
+    arguments = Arguments()
+    named = [lubricants] if isinstance(lubricants, str) else lubricants
+    request = pb.EvaluateCycleRequest(
+        lubricants=[full_name("lubricants", each) for each in named],
+        gear_set=full_name("gearSets", hardware["gear_set"] or ""),
+        surface=full_name("surfaces", hardware["surface"] or ""),
+        vehicle=full_name("vehicles", hardware["vehicle"] or ""),
+        point_by_point=point_by_point,
+        sheared_lubricant=sheared,
+    )
+    for name, value in quantities.items():
+        if value is not None:
+            setattr(request, name, arguments.number(name, value))
+    _set_cycle(arguments, cycle, request)
+    set_switches(arguments, "model_options", model_options, request.model_options)
+    arguments.check()
+    answer = await transport.call("CycleService", "EvaluateCycle", request, patient=True)
+    rows = []
+    for lubricant in answer.lubricants:
+        for part, loss in zip(answer.parts, lubricant.parts or [None] * len(answer.parts)):
+            rows.append(
+                {
+                    "lubricant": lubricant.lubricant_revision,
+                    "part": enum_word(pb.CyclePartKind.DESCRIPTOR, part.kind),
+                    "minimum_speed_kilometres_per_hour": part.minimum_speed_kilometres_per_hour,
+                    "maximum_speed_kilometres_per_hour": part.maximum_speed_kilometres_per_hour,
+                    "duration_seconds": part.duration_seconds,
+                    "distance_metres": part.distance_metres,
+                    **{name: getattr(loss, name) if loss else np.nan for name in _FIGURES},
+                    "status": lubricant.refusal_reason or "OK",
+                    "status_message": lubricant.refusal_message,
+                }
+            )
+    return frame(in_columns(rows), _attrs(answer))
+
+
+def _attrs(answer: pb.EvaluateCycleResponse) -> dict[str, Any]:
+    pieces: dict[str, Any] = {name: np.array(getattr(answer, name)) for name in _PIECE_COLUMNS}
+    for each in answer.lubricants:
+        power = np.array(each.mesh_loss_power_watts)
+        missing = np.full(len(answer.start_seconds), np.nan)
+        name = f"mesh_loss_power_watts.{each.lubricant_revision}"
+        pieces[name] = power if len(power) else missing
+    whole = [
+        {
+            "lubricant": each.lubricant_revision,
+            "loss_joules": each.loss_joules,
+            "map_error_joules": each.map_error_joules,
+            "solver_error_joules": each.solver_error_joules,
+            "inefficiency_percent": each.inefficiency_percent,
+            "points": each.points,
+        }
+        for each in answer.lubricants
+    ]
+    return {
+        "pieces": frame(pieces, {}),
+        "whole": frame(in_columns(whole), {}),
+        "duration_seconds": answer.duration_seconds,
+        "distance_metres": answer.distance_metres,
+        "standstill_seconds": answer.standstill_seconds,
+        "gear_set_revision": answer.gear_set_revision,
+        "surface_revision": answer.surface_revision,
+        "vehicle_revision": answer.vehicle_revision,
+        "model_version": answer.model_version,
+        "input_warnings": {
+            of.lubricant_revision: {each.code: each.message for each in of.input_warnings}
+            for of in answer.lubricants
+        },
+    }

@@ -1,0 +1,96 @@
+#include "core/study/range_sentences.h"
+
+#include "core/celsius.h"
+#include "core/number_text.h"
+#include "core/study/figure_limits.h"
+#include "core/surface/roughness_product.h"
+
+namespace tribodyn {
+namespace {
+
+constexpr int kRangeDigits = 3;  // a sentence says where a range is left, not by how many digits
+
+std::string brief_text(double value) { return number_text(value, kRangeDigits); }
+
+std::string range_text(double low, double high, const char* unit) {
+  return brief_text(low) + " to " + brief_text(high) + " " + unit;
+}
+
+std::string limiting_stress_origin(FluidGrounds::LimitingStress limiting_stress) {
+  switch (limiting_stress) {
+    case FluidGrounds::LimitingStress::kMeasuredAtForty:
+      return "was measured at 40 C";
+    case FluidGrounds::LimitingStress::kEstimated:
+      return "is estimated from the class of base oil";
+    case FluidGrounds::LimitingStress::kStated:
+      break;
+  }
+  return "is as stated for this lubricant";
+}
+
+}  // namespace
+
+std::string viscosity_sentence(const FluidGrounds& grounds, double inlet_temperature,
+                               double hottest_temperature) {
+  if (!grounds.viscosity_measured) return {};
+  const double inlet = inlet_temperature - kZeroCelsius;
+  const double hottest = hottest_temperature - kZeroCelsius;
+  const double lowest = grounds.viscosity_measured->lowest - kZeroCelsius;
+  const double highest = grounds.viscosity_measured->highest - kZeroCelsius;
+  // Kelvin and back leaves an error in the 14th digit.
+  constexpr double kRounding = 1e-9;
+  if (inlet >= lowest - kRounding && hottest <= highest + kRounding) return {};
+  return "the film is at " + range_text(inlet, hottest, "C") +
+         "; the viscosity of this lubricant was measured from " + range_text(lowest, highest, "C") +
+         " and is extrapolated beyond";
+}
+
+std::string pressure_sentence(double pressure) {
+  const double gigapascals = 1e-9 * pressure;
+  constexpr double kLowest = 1e-9 * kLowestComparedPressure;
+  constexpr double kHighest = 1e-9 * kHighestComparedPressure;
+  if (gigapascals >= kLowest && gigapascals <= kHighest) return {};
+  return "the largest contact pressure is " + brief_text(gigapascals) + " GPa, " +
+         (gigapascals < kLowest ? "below" : "above") + " the " +
+         range_text(kLowest, kHighest, "GPa") +
+         " at which the friction model was compared with measurements (fig 5)";
+}
+
+std::string film_ratio_sentence(double film_ratio) {
+  if (!(film_ratio < kSparseAsperities)) return {};
+  return "the film ratio falls to " + brief_text(film_ratio) + "; below about " +
+         brief_text(kSparseAsperities) +
+         " asperities overlap, which Greenwood and Tripp take to be sparse";
+}
+
+std::string roughness_product_sentence(const Roughness& roughness) {
+  const double product = roughness_product(roughness);
+  if (product >= kLeastRoughnessProduct && product <= kMostRoughnessProduct) return {};
+  return "eta_G beta_G sigma_G is " + brief_text(product) +
+         "; Greenwood and Tripp expect 0.03 to 0.05 for steel on steel";
+}
+
+std::string limiting_stress_sentence(const FluidGrounds& grounds, double area_share) {
+  if (!(area_share > 0.5)) return {};
+  return brief_text(100 * area_share) +
+         " % of the loaded area is at the limiting shear stress, which " +
+         limiting_stress_origin(grounds.limiting_stress) +
+         " and is taken to be independent of temperature";
+}
+
+std::string cold_inlet_sentence(double inlet_temperature, const ModelOptions& options) {
+  const double inlet = inlet_temperature - kZeroCelsius;
+  if (!(inlet < 20)) return {};
+  return "the inlet is at " + brief_text(inlet) +
+         (options.inlet_shear_heating
+              ? " C; starvation thins the film of cold oil and is not modelled"
+              : " C; inlet shear heating and starvation thin the film of cold oil and are not "
+                "modelled");
+}
+
+std::string isothermal_sentence(const ModelOptions& options) {
+  if (!options.isothermal) return {};
+  return "contact temperature held at the inlet's: friction at speed is too high";
+}
+
+}  // namespace tribodyn

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "core/lubricant/fluid_grounds.h"
+#include "core/model_options.h"
+#include "core/surface/surface.h"
+
+// What is said where a law leaves the range in which it was measured or checked, of points and of
+// rigs. Each sentence is empty inside the range.
+
+namespace tribodyn {
+
+/// Of the film's temperatures [K]; empty also if the range of the measurements is not known.
+std::string viscosity_sentence(const FluidGrounds& grounds, double inlet_temperature,
+                               double hottest_temperature);
+/// Of the largest contact pressure [Pa].
+std::string pressure_sentence(double pressure);
+/// Of the least film ratio [-].
+std::string film_ratio_sentence(double film_ratio);
+std::string roughness_product_sentence(const Roughness& roughness);
+/// Of the share of the loaded area on the limiting shear stress [-].
+std::string limiting_stress_sentence(const FluidGrounds& grounds, double area_share);
+/// Of the temperature at the contact inlet [K].
+std::string cold_inlet_sentence(double inlet_temperature, const ModelOptions& options);
+std::string isothermal_sentence(const ModelOptions& options);
+
+}  // namespace tribodyn
