@@ -87,6 +87,8 @@ const VIEWS = [
   ['campaign', '/campaigns/1?view=rows&order=mesh_loss_power_watts&c=7', '.rows tbody tr'],
   ['campaign-plot', '/campaigns/1?view=plot&x=cost_euros_per_kilogram&color=additive', '.scatter canvas'],
   ['campaign-parallel', '/campaigns/1?view=parallel&b=mesh_loss_power_watts:12..20', '.parallel-axis'],
+  ['cycles', '/cycles', '.over-time canvas'],
+  ['cycles-own', '/cycles?cycle=own', '.drop'],
   ['rigs', '/rigs', '.read-out'],
   ['rigs-film', '/rigs?kind=film', '.read-out'],
   ['paper', '/paper', '.places'],

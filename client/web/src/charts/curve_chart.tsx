@@ -20,6 +20,8 @@ function logarithmicText(value: number | null): string {
   return `${factor === 1 ? '' : `${factor}·`}10${[...String(exponent)].map((each) => SUPERSCRIPTS[Number(each)]).join('')}`;
 }
 
+const tickTexts = (_u: uPlot, all: (number | null)[]): string[] => all.map((each) => (each === null ? '' : tickText(each)));
+
 const hatches = new Map<string, CanvasPattern | string>();
 
 /** Oblique lines of a color as a fill, made once. */
@@ -303,8 +305,8 @@ export function CurveChart({ spec, height, isSmall = false, sync, xRange = spec.
           y: { ...(spec.yIsLogarithmic ? { distr: 3 as const } : {}), range: () => motion.y },
         },
         axes: [
-          { ...axis, size: isSmall ? 24 : 30, space: isSmall ? 45 : 60 },
-          { ...axis, size: isSmall ? 44 : 52, space: isSmall ? 26 : 36, values: (_u: uPlot, all: (number | null)[]) => all.map(spec.yIsLogarithmic ? logarithmicText : (each) => (each === null ? '' : tickText(each))) },
+          { ...axis, size: isSmall ? 24 : 30, space: isSmall ? 45 : 60, ...(spec.xIsLogarithmic ? {} : { values: tickTexts }) },
+          { ...axis, size: isSmall ? 44 : 52, space: isSmall ? 26 : 36, values: spec.yIsLogarithmic ? (_u, all) => all.map(logarithmicText) : tickTexts },
         ],
         // uPlot has the axes and the cursor; the lines are painted below.
         series: [{}, { paths: () => null, points: { show: false } }],

@@ -48,7 +48,7 @@ export function Scatter({ dots, xLabel, yLabel, height, chosen, steps = [], onCh
     const radius = dots.length > MANY ? 2.2 : 3.6;
     const behindFirst = [...dots].sort((a, b) => Number(a.series >= 0) - Number(b.series >= 0));
     for (const dot of behindFirst) {
-      context.globalAlpha = dot.series < 0 ? 0.35 : 0.75;
+      context.globalAlpha = dot.series < 0 ? 0.6 : 0.75;
       context.fillStyle = context.strokeStyle = dot.series < 0 ? colors.other : colorOf(dot.series, colors);
       if (dot.low !== undefined && dot.series >= 0) {
         context.lineWidth = 1;

@@ -1,6 +1,8 @@
+import { useMemo } from 'preact/hooks';
 import { fluidsOf, shortTitle, speedUnitOf, variantOf, type Curve } from '../curve';
 import { idOf, revisionIdOf, rounded } from '../format';
-import { isInRpm, shown } from '../units';
+import { Store, useStore } from '../store';
+import { isInRpm, shown, units } from '../units';
 import { QUANTITIES, type Quantity } from '../quantities';
 import { figureOf, type ComparedGroup } from '../uncertainty';
 import { finite, Num } from './num';
@@ -10,9 +12,8 @@ interface ReadOutProps {
   curves: Curve[];
   titles: Map<string, string>;
   groups: ComparedGroup[] | undefined;
-  speed: number | null;
+  speed: Store<number | null>;
   shownQuantity: Quantity; // on the main plot
-  onSpeed: (speed: number) => void;
   onOpen: (curve: Curve, speed: number) => void;
 }
 
@@ -39,19 +40,30 @@ function greatestAt(curves: Curve[], column: string): number | null {
 }
 
 /** Every number of the plots at one speed. */
-export function ReadOut({ curves, titles, groups, speed, shownQuantity, onSpeed, onOpen }: ReadOutProps) {
-  const speeds = [...new Set(curves.flatMap((curve) => curve.columns['speed_kilometres_per_hour'] as number[]))].sort((a, b) => a - b);
-  const at = speed !== null && speeds.includes(speed) ? speed : speeds[Math.floor(speeds.length / 2)]!;
+export function ReadOut({ curves, titles, groups, speed, shownQuantity, onOpen }: ReadOutProps) {
+  const chosen = useStore(speed);
+  const inUnits = useStore(units);
+  const onSpeed = (next: number) => speed.set(next);
+  // What a speed does not change is made once: the table follows the pointer.
+  const speeds = useMemo(() => [...new Set(curves.flatMap((curve) => curve.columns['speed_kilometres_per_hour'] as number[]))].sort((a, b) => a - b), [curves]);
+  const lines = useMemo(() => {
+    const fluids = fluidsOf(curves);
+    const simulations = curves.map((curve) => curve.simulation);
+    return curves.map((curve) => {
+      const revision = curve.simulation.lubricant_revision ?? '';
+      const variant = variantOf(curve.simulation, simulations);
+      return {
+        curve, series: fluids.indexOf(revision), label: `${shortTitle(titles.get(idOf(revision)) ?? revisionIdOf(revision))}${variant && `, ${variant}`}`,
+        rows: new Map(curve.columns['speed_kilometres_per_hour']!.map((each, row) => [each, row])),
+      };
+    });
+  }, [curves, titles, inUnits]);
+  const worst = useMemo(() => greatestAt(curves, shownQuantity.columns.at(-1)!), [curves, shownQuantity]);
+  const at = chosen !== null && speeds.includes(chosen) ? chosen : speeds[Math.floor(speeds.length / 2)]!;
   const index = speeds.indexOf(at);
-  const worst = greatestAt(curves, shownQuantity.columns.at(-1)!);
-  const fluids = fluidsOf(curves);
-  const simulations = curves.map((curve) => curve.simulation);
   const columns = QUANTITIES.flatMap((quantity) => quantity.columns.map((column, k) => ({ quantity, column, k })));
-  const torque = finite(curves[0]!.columns['pinion_torque_newton_metres']![curves[0]!.columns['speed_kilometres_per_hour']!.indexOf(at)]);
-  const errors = curves.map((curve) => {
-    const row = curve.columns['speed_kilometres_per_hour']!.indexOf(at);
-    return curve.columns['estimated_relative_error']![row];
-  });
+  const torque = finite(curves[0]!.columns['pinion_torque_newton_metres']![lines[0]!.rows.get(at) ?? -1]);
+  const errors = lines.map(({ curve, rows }) => curve.columns['estimated_relative_error']![rows.get(at) ?? -1]);
   return (
     <section class="read-out" aria-labelledby="read-out-title">
       <div class="heading">
@@ -75,16 +87,11 @@ export function ReadOut({ curves, titles, groups, speed, shownQuantity, onSpeed,
             </tr>
           </thead>
           <tbody>
-            {curves.map((curve) => {
-              const revision = curve.simulation.lubricant_revision ?? '';
-              const row = curve.columns['speed_kilometres_per_hour']!.indexOf(at);
-              const variant = variantOf(curve.simulation, simulations);
+            {lines.map(({ curve, series, label, rows }) => {
+              const row = rows.get(at) ?? -1;
               return (
                 <tr key={curve.simulation.name}>
-                  <th scope="row">
-                    <Swatch series={fluids.indexOf(revision)} />
-                    {shortTitle(titles.get(idOf(revision)) ?? revisionIdOf(revision))}{variant && `, ${variant}`}
-                  </th>
+                  <th scope="row"><Swatch series={series} />{label}</th>
                   {columns.map(({ quantity, column }) => (
                     <td key={column} class="number">{row < 0 ? '–' : <CurveNum curve={curve} row={row} quantity={quantity} column={column} groups={groups} />}</td>
                   ))}

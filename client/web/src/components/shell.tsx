@@ -15,13 +15,14 @@ import { UnitChoices } from './unit_choices';
 const LINKS: { path: string; word: string; isMinor?: boolean }[] = [
   { path: '/', word: 'Home' }, { path: '/curves', word: 'Curves' }, { path: '/compare', word: 'Compare', isMinor: true },
   { path: '/fluids', word: 'Fluids' }, { path: '/jobs', word: 'Jobs' }, { path: '/campaigns', word: 'Campaigns', isMinor: true },
-  { path: '/rigs', word: 'Rigs', isMinor: true }, { path: '/paper', word: 'The paper', isMinor: true }, { path: '/more', word: 'More' },
+  { path: '/cycles', word: 'Cycles', isMinor: true }, { path: '/rigs', word: 'Rigs', isMinor: true }, { path: '/paper', word: 'The paper', isMinor: true }, { path: '/more', word: 'More' },
 ];
 
 /** Views by the first word of the path; each but the first has its own chunk. */
 const VIEWS: Record<string, () => Promise<ComponentType>> = {
   campaigns: async () => (await import('../views/campaigns')).Campaigns,
   compare: async () => (await import('../views/compare')).Compare,
+  cycles: async () => (await import('../views/cycles')).Cycles,
   curves: async () => (await import('../views/curves')).Curves,
   fluids: async () => (await import('../views/fluids')).Fluids,
   more: async () => (await import('../views/more')).More,

@@ -92,7 +92,7 @@ function Counts({ of, words }: { of: { excluded?: number; refused?: number; miss
   const all: [number | undefined, string][] = [...words, [of.excluded, 'outside the ranges'], [of.refused, 'without figures'], [of.missing, 'not computed yet']];
   return (
     <p class="muted small" role="status">
-      {all.filter(([count], k) => k < words.length || (count ?? 0) > 0).map(([count, text], k) => <span key={text}>{k > 0 && ', '}<span data-value={count ?? 0}>{count ?? 0}</span> {text}</span>)}
+      {all.filter(([count], k) => k < words.length || (count ?? 0) > 0).map(([count, text], k) => <span key={text}>{k > 0 && ', '}<span data-value={count ?? 0}>{count ?? 0}</span> {count === 1 ? text.replace('candidates are', 'candidate is').replace(/^are/, 'is') : text}</span>)}
     </p>
   );
 }

@@ -10,7 +10,7 @@ import { Failure, Notice } from '../components/notice';
 import { ReadOut } from '../components/read_out';
 import { Swatch } from '../components/swatch';
 import { Validity } from '../components/validity';
-import { bandsOf, fluidsOf, optionsOf, readCurve, readSimulation, remarksOf, shortTitle, specOf, speedNear, speedUnitOf, splitSpecOf, variantOf, type Curve } from '../curve';
+import { axisOf, bandsOf, fluidsOf, optionsOf, readCurve, readSimulation, remarksOf, shortTitle, specOf, speedNear, speedUnitOf, splitSpecOf, variantOf, type Curve } from '../curve';
 import { idOf, revisionIdOf } from '../format';
 import { QUANTITIES, quantityOf } from '../quantities';
 import { warningOf } from '../validity';
@@ -18,7 +18,7 @@ import { bodiesOf, DEFAULTS, inputsOf, queryOf, requestOf, requestOfSimulations,
 import { studyOf } from '../histories';
 import { titlesOf, useGearSets, useLubricants } from '../resources';
 import { address, go, place, set } from '../router';
-import { useStore } from '../store';
+import { Store, useStore } from '../store';
 import { shown, units, watts } from '../units';
 import { differencesOf, needsContactFigures, specWithIntervals, useUncertainty, type ComparedGroup } from '../uncertainty';
 import { POINTS } from '../comparison';
@@ -118,7 +118,8 @@ export function Curves() {
   const [request, setRequest] = useState<CurveRequest>(() => requestOf(query));
   const [refusal, setRefusal] = useState<unknown>(null);
   const [busy, setBusy] = useState(false);
-  const [speed, setSpeed] = useState<number | null>(query.has('v') ? Number(query.get('v')) : null);
+  // A store of its own: the pointer moves the table of numbers alone, and not the whole view.
+  const [speed] = useState(() => new Store<number | null>(query.has('v') ? Number(query.get('v')) : null));
   const filledFrom = useRef('');
 
   // The form shows what is on the plot, until the reader changes it.
@@ -144,7 +145,8 @@ export function Curves() {
   const uncertainty = useUncertainty(done, reference, hasBands && needsContactFigures(quantity.columns), done.length === jobs.length && done.length > 0);
   const groups = uncertainty.isStale ? undefined : uncertainty.value;
   const speedUnit = speedUnitOf(done[0]); // addresses have km/h
-  const onPlace = (place: number) => setSpeed(speedNear(done, place));
+  const places = useMemo(() => new Map(done.flatMap((curve) => axisOf(curve).map((x, row) => [x, curve.columns['speed_kilometres_per_hour']![row]!] as const))), [done, inUnits]);
+  const onPlace = (place: number) => speed.set(places.get(place) ?? speedNear(done, place));
   const zoom = useMemo<[number, number] | undefined>(() => {
     const [from, to] = (query.get('x') ?? '').split('-').map(Number);
     return from !== undefined && to !== undefined && to > from ? [shown(from, speedUnit), shown(to, speedUnit)] : undefined;
@@ -267,7 +269,7 @@ export function Curves() {
             {difference && (
               <Differences spec={difference} groups={groups!} titles={titles} fluids={fluids} reference={reference} xRange={zoom} onSpeed={onPlace} onZoom={onZoom} />
             )}
-            <ReadOut curves={done} titles={titles} groups={hasBands ? groups : undefined} speed={speed} shownQuantity={quantity} onSpeed={setSpeed} onOpen={(curve, at) => void openPoint(curve, at)} />
+            <ReadOut curves={done} titles={titles} groups={hasBands ? groups : undefined} speed={speed} shownQuantity={quantity} onOpen={(curve, at) => void openPoint(curve, at)} />
             <CurveValidity curves={done} />
             <div class="multiples">
               {QUANTITIES.map((each) => (

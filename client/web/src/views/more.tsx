@@ -3,6 +3,7 @@ import { address } from '../router';
 const PLACES: [string, string, string][] = [
   ['/compare', 'Compare', 'Two fluids: who loses less, how sure that is, and why'],
   ['/campaigns', 'Campaigns', 'Thousands of candidates: ranks, fronts, ranges'],
+  ['/cycles', 'Cycles', 'The energy that the mesh loses over a drive cycle, when, and where it arises'],
   ['/rigs', 'Rigs', 'Traction, film and Stribeck curves of a ball on a disc'],
   ['/paper', 'The paper', 'Figures of Paouris et al. (2018) as curves of this server'],
   ['/docs', 'Programs', 'Every address and field of the interface for programs'],
