@@ -226,6 +226,10 @@ test('a plot is moved with Shift without a new table, and shows in the end what 
     new MutationObserver((changes) => (window.tableChanges += changes.length)).observe(document.querySelector('.read-out'), { subtree: true, childList: true, characterData: true });
   });
   const plot = await page.locator('.figure .u-over').first().boundingBox();
+  for (const [share, speed] of [[0.3, 65], [0.7, 70]]) {
+    await page.mouse.move(plot.x + share * plot.width, plot.y + 50);
+    await page.getByRole('heading', { name: `At ${speed} km/h` }).waitFor();
+  }
   await page.keyboard.down('Shift');
   await page.mouse.move(plot.x + 0.8 * plot.width, plot.y + 50);
   await page.evaluate(() => (window.tableChanges = 0));

@@ -12,6 +12,7 @@ import { Num } from '../components/num';
 import { Swatch } from '../components/swatch';
 import { Validity } from '../components/validity';
 import { TakeAway } from '../components/take_away';
+import { shortTitle } from '../curve';
 import { ago, idOf, revisionIdOf, rounded } from '../format';
 import { titlesOf, useLoaded, useLubricants } from '../resources';
 import { address, place, set } from '../router';
@@ -117,7 +118,7 @@ function CampaignList() {
               {campaigns.map((each) => (
                 <tr key={each.name}>
                   <td><a href={address(`/campaigns/${idOf(each.name)}`)}>{each.display_name || `Campaign ${idOf(each.name)}`}</a><small>{idOf(each.name)}</small></td>
-                  <td>{titles.get(idOf(each.lubricant)) ?? idOf(each.lubricant)}</td>
+                  <td>{shortTitle(titles.get(idOf(each.lubricant)) ?? idOf(each.lubricant))}</td>
                   <td class="number">{each.candidates}</td>
                   <td class="number">{each.conditions?.length}</td>
                   <td><State campaign={each} />{each.stop && <small class={each.state === 'FAILED' ? 'problem' : ''}>{each.stop.message}</small>}</td>

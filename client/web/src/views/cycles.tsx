@@ -291,7 +291,7 @@ function Traces({ answer, names }: { answer: EvaluateCycleResponse; names: strin
           <li><span>Speed</span><strong>{number(answer.speed_kilometres_per_hour?.[row])}</strong> km/h</li>
           <li><span>Acceleration</span><strong>{number(answer.acceleration_metres_per_second_squared?.[row])}</strong> m/s²</li>
           <li><span>Torque at the wheels</span><strong>{number(answer.wheel_torque_newton_metres?.[row])}</strong> N m</li>
-          <li><span>Sump</span><strong>{number(answer.sump_temperature_celsius?.[row], celsius, 0.1)}</strong> {celsius.symbol}</li>
+          <li><span>Sump</span><strong>{number(answer.sump_temperature_celsius?.[row], celsius, 0.2)}</strong> {celsius.symbol}</li>
           {(answer.lubricants ?? []).map((fluid, k) => (
             <li key={k}><span><Swatch series={k} /> {names[k]} loses</span><strong>{number(fluid.mesh_loss_power_watts?.[row], watts)}</strong> {watts.symbol}</li>
           ))}

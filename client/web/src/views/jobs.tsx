@@ -7,7 +7,7 @@ import { Missing } from '../components/missing';
 import { Failure, Notice } from '../components/notice';
 import { Validity } from '../components/validity';
 import { remarksOnce } from '../validity';
-import { INPUT_FIELDS, readSimulation } from '../curve';
+import { INPUT_FIELDS, readSimulation, shortTitle } from '../curve';
 import { ago, duration, idOf, revisionIdOf } from '../format';
 import { PROVENANCE } from '../provenance';
 import { inputsOf } from '../request';
@@ -96,7 +96,7 @@ function JobList({ state }: { state: string }) {
               {jobs.map((job) => (
                 <tr key={job.name}>
                   <td><a href={address(`/jobs/${idOf(job.name)}`)}>{idOf(job.name)}</a></td>
-                  <td>{titles.get(idOf(job.lubricant)) ?? idOf(job.lubricant)}</td>
+                  <td>{shortTitle(titles.get(idOf(job.lubricant)) ?? idOf(job.lubricant))}</td>
                   <td>{job.display_name && <strong>{job.display_name}: </strong>}{subject(job)}{job.state === 'FAILED' && <small class="problem">{job.error?.message}</small>}</td>
                   <td class="number">{sumpText(job.sump_temperature_celsius)}</td>
                   <td><JobState simulation={job} /></td>
