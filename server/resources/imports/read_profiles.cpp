@@ -289,11 +289,12 @@ std::string unresolved_text(const Measurements& measurements) {
     const double waves =
         wave_length_in_spacings(measured_profile(each).moments, each.spacing_metres());
     if (!(waves < kLeastSpacingsPerWave)) continue;
-    out =
-        join(out, fmt::format("the waves of {} are {:.2g} sample spacings long (white noise: "
-                              "3): the profile contains the instrument's noise or was not filtered "
-                              "(ISO 3274 requires a cut-off lambda_s of at least 5 spacings)",
-                              profile_text(each), waves));
+    const std::string sentence = fmt::format(
+        "the waves of {} are {:.2g} sample spacings long (white noise: "
+        "3): the profile contains the instrument's noise or was not filtered "
+        "(ISO 3274 requires a cut-off lambda_s of at least 5 spacings)",
+        profile_text(each), waves);
+    if (out.find(sentence) == std::string::npos) out = join(out, sentence);  // repeats are alike
   }
   return out;
 }
