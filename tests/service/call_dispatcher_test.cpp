@@ -24,6 +24,7 @@
 #include "server/application/list_filter.h"
 #include "tests/service/resource_calls.h"
 #include "tests/service/support.h"
+#include "tribodyn/v1/cycles.pb.h"
 
 namespace tribodyn::server {
 namespace {
@@ -219,6 +220,41 @@ TEST_F(CallDispatcherTest, AStatementOfAClientThatCancelsIsInterrupted) {
     EXPECT_EQ(error.kind(), StoreError::Kind::kCancelled);
   }
   client.join();
+}
+
+TEST_F(CallDispatcherTest, ADriveCycleOfAMillionPlacesIsRefused) {
+  v1::EvaluateCycleRequest request;
+  for (int i = 0; i < 1'000'000; ++i) {
+    request.add_places()->set_time_seconds(i);
+    if (i != 20'000) continue;
+    TestCall many(request);
+    EXPECT_THAT(complaints(answer(many)),
+                HasSubstr("places: 20001 entries; allowed: at most 10000"));
+  }
+  TestCall too_many(request);
+  EXPECT_THAT(complaints(answer(too_many)),
+              HasSubstr("bytes; allowed: at most 1048576 for EvaluateCycle"));
+}
+
+TEST_F(CallDispatcherTest, ReadsDoNotWaitForDriveCycles) {
+  v1::EvaluateCycleRequest request;
+  request.add_lubricants("lubricants/paper-fluid-1");
+  request.set_named_cycle(v1::NAMED_CYCLE_NEDC);
+  request.set_map_tolerance(2e-2);
+  std::vector<std::unique_ptr<TestCall>> cycles;
+  for (int i = 0; i < 4; ++i) cycles.push_back(std::make_unique<TestCall>(request));
+  const StopWatch computing;
+  for (const auto& each : cycles) dispatcher_.answer(*each);
+  std::vector<double> seconds;
+  while (seconds.size() < 20) {
+    TestCall read(get());
+    const StopWatch watch;
+    EXPECT_EQ(answer(read).code(), google::rpc::OK);
+    seconds.push_back(watch.seconds());
+  }
+  for (const auto& each : cycles) EXPECT_EQ(each->wait().code(), google::rpc::OK);
+  std::nth_element(seconds.begin(), seconds.begin() + 10, seconds.end());
+  EXPECT_LT(seconds[10], computing.seconds() / 10);
 }
 
 TEST_F(CallDispatcherTest, ReadsDoNotWaitForHeavyCalls) {

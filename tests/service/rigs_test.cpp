@@ -1,11 +1,16 @@
 // EvaluateRig: columns of figures of a ball on a disc, without anything stored.
 #include "server/application/rigs.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "core/refusal.h"
 #include "server/mapping/to_core.h"
@@ -198,6 +203,54 @@ TEST(EvaluateRig, ChecksTheLastOfManyConditions) {
   while (request.conditions_size() < 5000) add_rig_condition(request, 38, 1);
   request.mutable_conditions(4999)->set_load_newtons(-1);
   EXPECT_THAT(rig_violations(request), HasSubstr("conditions[4999].load_newtons"));
+}
+
+TEST(EvaluateRig, TellsTheRowsInWhichALawLeavesItsRange) {
+  v1::EvaluateRigRequest request = rig_request();
+  request.clear_conditions();
+  for (const double load : {5.0, 38.0, 60.0, 20.0}) add_rig_condition(request, load, 10, 60);
+  add_rig_condition(request, 38, 10, 10);
+  request.set_surface("surfaces/run-in");
+  request.set_composite_rms_height_metres(1e-6);  // no full film
+  const v1::EvaluateRigResponse out = run_rig(request);
+  std::map<std::string, const v1::RigRangeWarning*> by_code;
+  for (const v1::RigRangeWarning& each : out.range_warnings()) {
+    EXPECT_TRUE(by_code.emplace(each.code(), &each).second) << "one for each law";
+  }
+  std::vector<int> outside;
+  double furthest = 1, pressure_there = 0;
+  for (int i = 0; i < 5; ++i) {
+    const double pressure = out.maximum_pressure_pascals(i);
+    const double excess = std::max(0.85e9 / pressure, pressure / 1.35e9);
+    if (excess > 1) outside.push_back(i);
+    if (excess > furthest) {
+      furthest = excess;
+      pressure_there = pressure;
+    }
+  }
+  ASSERT_FALSE(outside.empty());
+  ASSERT_LT(outside.size(), 5U);
+  ASSERT_NE(by_code["PRESSURE"], nullptr);
+  EXPECT_THAT(by_code["PRESSURE"]->rows(), testing::ElementsAreArray(outside));
+  EXPECT_THAT(by_code["PRESSURE"]->message(),
+              HasSubstr(fmt::format("{:.3g} GPa", 1e-9 * pressure_there)));
+  ASSERT_NE(by_code["COLD_INLET"], nullptr);
+  EXPECT_THAT(by_code["COLD_INLET"]->rows(), testing::ElementsAre(4));
+  EXPECT_THAT(by_code["COLD_INLET"]->message(), HasSubstr("10 C"));
+  ASSERT_NE(by_code["FILM_RATIO"], nullptr);
+  for (const int row : by_code["FILM_RATIO"]->rows()) EXPECT_LT(out.film_ratio(row), 0.5);
+  EXPECT_EQ(by_code["ISOTHERMAL"], nullptr);
+}
+
+TEST(EvaluateRig, SmoothSpecimensHaveNoWarningOfAsperities) {
+  v1::EvaluateRigRequest request = rig_request();
+  request.mutable_model_options()->set_isothermal(true);
+  const v1::EvaluateRigResponse out = run_rig(request);
+  std::set<std::string> codes;
+  for (const v1::RigRangeWarning& each : out.range_warnings()) codes.insert(each.code());
+  EXPECT_FALSE(codes.contains("FILM_RATIO"));
+  EXPECT_FALSE(codes.contains("ROUGHNESS_PRODUCT"));
+  EXPECT_TRUE(codes.contains("ISOTHERMAL"));
 }
 
 TEST(EvaluateRig, StopsWhenItsCallIsOver) {
