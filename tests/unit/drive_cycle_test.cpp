@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "core/refusal.h"
+#include "core/study/cycle_loss.h"
 #include "core/study/loss_map.h"
+#include "core/vehicle/vehicle.h"
 
 namespace tribodyn {
 namespace {
@@ -51,6 +54,17 @@ TEST(DriveCycle, ACycleThatCannotBeDrivenIsRefusedAtItsPlace) {
   EXPECT_NE(refusal({"", {{0, 0}, {1e12, 1}}}).find("1000000 pieces"), std::string::npos);
   EXPECT_NE(refusal({"", {{0, 0}, {1, -1}}}).find("negative"), std::string::npos);
   EXPECT_NE(refusal({"", {{0, 0}, {1, std::nan("")}}}).find("not finite"), std::string::npos);
+}
+
+TEST(DriveCycle, TheTemperatureOfTheSumpIsLinearBetweenPlaces) {
+  double seconds = 0;
+  for (const CyclePiece& piece :
+       pieces_of({"", {{0, 5, 0, 300}, {10, 5, 0, 320}, {20, 5, 0, 320}}})) {
+    const double middle = piece.start + 0.5 * piece.duration;
+    EXPECT_NEAR(piece.sump_temperature, std::min(300 + 2 * middle, 320.0), 1e-9);
+    seconds += piece.duration;
+  }
+  EXPECT_NEAR(seconds, 20, 1e-12);
 }
 
 /// A loss that grows with torque, has a kink at none, and a narrow resonance.
@@ -109,6 +123,68 @@ TEST(LossMap, EndsWithoutANumberWhereAForceIsNone) {
     return std::vector<double>(places.size(), std::nan(""));
   });
   EXPECT_TRUE(std::isnan(map.energy()));
+}
+
+constexpr Vehicle kCar{1300, 0.0125, 0.3, 2.2, 1.225, 0.28, 9.81};
+
+std::vector<double> smooth_losses(const std::vector<MapPlace>& places) {
+  std::vector<double> out;
+  for (const MapPlace& place : places) out.push_back(smooth_loss(place));
+  return out;
+}
+
+TEST(CycleLoss, OfTheMapIsWithinItsErrorOfThatOfEachPieceAndAsksForFewerPoints) {
+  const DrivenCycle cycle = driven_cycle(pieces_of(nedc()), kCar);
+  CycleLossOptions options;
+  const CycleLoss by_map = cycle_loss(cycle, smooth_losses, options);
+  options.is_point_by_point = true;
+  const CycleLoss by_piece = cycle_loss(cycle, smooth_losses, options);
+  EXPECT_EQ(by_piece.map_error, 0);
+  double expected = 0, sum = 0;
+  for (std::size_t i = 0; i < cycle.pieces.size(); ++i) {
+    const CyclePiece& piece = cycle.pieces[i];
+    const double torque =
+        piece.speed == 0 ? 0 : wheel_torque(kCar, piece.speed, 0, piece.acceleration);
+    EXPECT_EQ(cycle.wheel_torques[i], torque);
+    expected +=
+        smooth_loss({piece.speed, torque, piece.sump_temperature}) * piece.speed * piece.duration;
+    sum += by_map.energies[i];
+  }
+  double each = 0;
+  for (const double energy : by_piece.energies) each += energy;
+  EXPECT_NEAR(each, expected, 1e-12 * expected);
+  EXPECT_LE(std::abs(sum - expected), by_map.map_error);
+  EXPECT_LE(by_map.map_error, 2e-3 * sum);
+  EXPECT_LT(by_piece.points, 400) << "the urban part is repeated four times, and solved once";
+}
+
+TEST(CycleLoss, PartsCoverTheCycleAndInputIsAtThePinionInDriveAndAtTheWheelsInCoast) {
+  const DrivenCycle cycle = driven_cycle(pieces_of(nedc()), kCar);
+  const std::vector<double> losses(cycle.pieces.size(), 2.0);
+  double phases = 0, bands = 0;
+  for (const CyclePart& part : parts_of(cycle)) {
+    const bool is_band = part.kind == CyclePartKind::kSpeedBand;
+    if (part.kind == CyclePartKind::kStandstill || is_band) bands += part.duration;
+    if (part.kind == CyclePartKind::kStandstill || part.kind == CyclePartKind::kDrive ||
+        part.kind == CyclePartKind::kCoast) {
+      phases += part.duration;
+    }
+    if (part.kind == CyclePartKind::kAll) {
+      EXPECT_NEAR(part.duration, 1180, 1e-9);
+      EXPECT_NEAR(part.distance, 11028, 1);
+    }
+    double input = 0;
+    for (const std::size_t i : part.pieces) {
+      const double wheel = cycle.wheel_torques[i] / kCar.wheel_radius * cycle.pieces[i].speed *
+                           cycle.pieces[i].duration;
+      input += wheel > 0 ? wheel + 2 : -wheel;
+    }
+    const CycleEnergy energy = energy_of(part, cycle, losses);
+    EXPECT_NEAR(energy.input, input, 1e-9 * input + 1e-12);
+    EXPECT_EQ(energy.loss, 2.0 * static_cast<double>(part.pieces.size()));
+  }
+  EXPECT_NEAR(phases, 1180, 1e-9);
+  EXPECT_NEAR(bands, 1180, 1e-9);
 }
 
 }  // namespace
