@@ -47,6 +47,7 @@ struct ContactBlockTables {
   double inverse_roughness = 0;    ///< 1/sigma_G [1/m]
   double asperity_load_factor = 0, asperity_area_factor = 0;
   BoundaryFriction boundary{};  ///< 0: no F_b
+  bool no_boundary_friction = false;
   double conductance_factor_1 = 0, conductance_factor_2 = 0;
   double inlet_temperature = 0;
 

@@ -1,5 +1,6 @@
 #include "core/contact/contact_sensitivity.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -20,7 +21,7 @@ using DualNumber = laws::Dual<double, kDirections>;
 // They are evaluated with derivatives by that, and by all inputs through the chain rule.
 
 /// By the conditions and contact_level; the last direction is for the unknown.
-constexpr int kContactLevel = 12;
+constexpr int kContactLevel = kDirectLevels;
 constexpr int kContactDirections = kConditions + kContactLevel + 1;
 using ContactNumber = laws::Dual<double, kContactDirections>;
 
@@ -42,7 +43,7 @@ std::array<Real*, kContactLevel> contact_level(ContactParametersOf<Real>& parame
 }
 
 /// By temperature, logarithm of the shear rate and stress_level.
-constexpr int kStressLevel = 9;
+constexpr int kStressLevel = kStressLevels;
 using StressNumber = laws::Dual<double, 2 + kStressLevel>;
 
 template <class Real>
@@ -86,7 +87,11 @@ struct ContactSensitivityModel::Constants {
   ContactParametersOf<ContactNumber> parameters;
   ContactConstants<ContactNumber> constants;
   ShearLaw<StressNumber> shear;
+  std::array<std::array<double, kContactParameters>, kContactLevels> levels{};
 
+  void set_level(int level, const DualNumber& x) {
+    std::copy(x.slope, x.slope + kContactParameters, levels[level].begin());
+  }
   DualNumber by_inputs(const ContactNumber& x) const {
     DualNumber out(x.value);
     for (int i = 0; i < kConditions; ++i) out.slope[kContactParameters + i] = x.slope[i];
@@ -107,10 +112,13 @@ ContactSensitivityModel::ContactSensitivityModel(const FlankContactModel& model)
   ModelOptions options = model.options();
   if (values.lubricant.relaxation_time == 0) options.newtonian = true;
   const auto index_of = [&](const DualNumber& factor, const DualNumber& coefficient) {
-    return laws::root_with_slopes<kDirections>(
-        model.pressure_viscosity_index(), [&](const DualNumber& index) {
-          return laws::roelands_reciprocal_asymptotic(factor, index) / coefficient - 1;
-        });
+    using Number = laws::Dual<double, 3>;  // by the factor, the coefficient and the unknown
+    const Number l = Number::variable(factor.value, 0);
+    const Number alpha = Number::variable(coefficient.value, 1);
+    const Number index = laws::root_with_slopes<3>(
+        model.pressure_viscosity_index(),
+        [&](const Number& z) { return laws::roelands_reciprocal_asymptotic(l, z) / alpha - 1; });
+    return chained(index.value, index.slope[0], factor, index.slope[1], coefficient);
   };
   ContactConstants<DualNumber> constants = contact_constants(parameters, options, index_of);
 
@@ -140,6 +148,21 @@ ContactSensitivityModel::ContactSensitivityModel(const FlankContactModel& model)
   }
   kept->limit_at_zero_pressure = parameters.lubricant.limiting_shear_stress_at_zero_pressure;
   kept->limit_coefficient = parameters.lubricant.limiting_shear_stress_coefficient;
+
+  for (int i = 0; i < kContactLevel; ++i) kept->set_level(i, kept->contact[i]);
+  for (int i = 0; i < kStressLevel; ++i) {
+    const int level = kDirectLevels + i;
+    const bool of_viscosity = level == kLevelLogVogelPrefactor || level == kLevelVogelCoefficient ||
+                              level == kLevelVogelReference;
+    // The others do nothing to a Newtonian fluid; by a relaxation time of 0 they have no
+    // derivatives.
+    if (of_viscosity || !options.newtonian) kept->set_level(level, kept->stress[i]);
+  }
+  for (int i = 1; i < kGrowthArguments; ++i) {
+    kept->set_level(kLevelGrowth + i - 1, kept->growth[i]);
+  }
+  kept->set_level(kLevelLimitAtZeroPressure, kept->limit_at_zero_pressure);
+  kept->set_level(kLevelLimitCoefficient, kept->limit_coefficient);
   constants_ = std::move(kept);
 }
 
@@ -249,6 +272,11 @@ ContactSensitivity ContactSensitivityModel::at(const ContactConditions& k, doubl
       (options.hertz_solution == HertzSolution::kSimplified && alike(k.radius_x, k.radius_y)) ||
       alike(shared.asperity_area.value, shared.contact_area.value);
   return out;
+}
+
+const std::array<std::array<double, kContactParameters>, kContactLevels>&
+ContactSensitivityModel::levels_by_parameter() const {
+  return constants_->levels;
 }
 
 const std::array<ContactInputName, kContactInputs>& contact_input_names() {

@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 
+#include "core/contact/contact_level.h"
 #include "core/contact/flank_contact.h"
 
 // Derivatives of one contact by all of its scalar inputs.
@@ -182,6 +183,11 @@ class ContactSensitivityModel {
   /// in the first order.
   ContactSensitivity at(const ContactConditions& conditions, double film_load,
                         double contact_temperature) const;
+
+  /// Derivatives of each ContactLevel by the parameters of the model: what takes those of
+  /// FlankContactBatch::differentiate() to the parameters.
+  const std::array<std::array<double, kContactParameters>, kContactLevels>& levels_by_parameter()
+      const;
 
  private:
   struct Constants;

@@ -147,6 +147,7 @@ FlankContactBatch::FlankContactBatch(const FlankContactModel& model, Instruction
   t.inverse_roughness = 1 / in.roughness.composite_rms_height;
   t.asperity_load_factor = constants.asperity_load_factor;
   t.asperity_area_factor = constants.asperity_area_factor;
+  t.no_boundary_friction = options.no_boundary_friction;
   if (!options.no_boundary_friction) t.boundary = in.boundary;
   t.conductance_factor_1 = constants.conductance_factor_1;
   t.conductance_factor_2 = constants.conductance_factor_2;
@@ -244,6 +245,7 @@ void put(const ContactSolution& s, std::size_t i, const FlankContactBatchResults
   set(to.mean_shear_stress, s.mean_shear_stress);
   set(to.limiting_stress_area_share, s.limiting_stress_area_share);
   set(to.limiting_stress_at_centre, s.limiting_stress_at_centre);
+  set(to.by_reference, true);
   set(to.status, s.status);
 }
 
@@ -272,6 +274,7 @@ void put(const ContactBlockResults& from, int count, Place&& place,
   copy(to.mean_shear_stress, from.mean_shear_stress);
   copy(to.limiting_stress_area_share, from.limited_area_share);
   set(to.limiting_stress_at_centre, [&](int n) { return from.limited_at_centre[n] != 0; });
+  set(to.by_reference, [](int) { return false; });
   set(to.status, [](int) { return ContactStatus::kOk; });
 }
 
@@ -387,6 +390,44 @@ std::size_t FlankContactBatch::solve(const ContactGeometries& geometries, std::s
   }
   if (filled > 0) flush();
   return by_reference;
+}
+
+void DifferentiatedContacts::clear(std::size_t room) {
+  count_ = 0;
+  solved_.resize(kSolvedContactRows, room);
+  slopes_.resize(room);
+}
+
+int DifferentiatedContacts::add(const ContactGeometries& geometries, std::size_t i,
+                                const ContactConditions& conditions, const Solved& solved) {
+  const auto put = [&](SolvedContactRow row, double value) { solved_[row][count_] = value; };
+  put(kSolvedLoad, conditions.load);
+  put(kSolvedVelocity1X, conditions.velocity_1_x);
+  put(kSolvedVelocity1Y, conditions.velocity_1_y);
+  put(kSolvedVelocity2X, conditions.velocity_2_x);
+  put(kSolvedVelocity2Y, conditions.velocity_2_y);
+  put(kSolvedCurvatureX, geometries.curvature_x_[i]);
+  put(kSolvedCurvatureY, geometries.curvature_y_[i]);
+  put(kSolvedUnitArea, geometries.unit_area_[i]);
+  put(kSolvedPerSemiX, geometries.per_semi_x_[i]);
+  put(kSolvedPerSemiY, geometries.per_semi_y_[i]);
+  put(kSolvedUnitPressure, geometries.maximum_pressure_[i]);
+  put(kSolvedFilmLoad, solved.film_load);
+  put(kSolvedContactTemperature, solved.contact_temperature);
+  put(kSolvedMeanShearStress, solved.mean_shear_stress);
+  put(kSolvedLimitedAreaShare, solved.limiting_stress_area_share);
+  return count_++;
+}
+
+void FlankContactBatch::differentiate(DifferentiatedContacts& contacts) const {
+  if (contacts.count_ == 0) return;
+  const auto count = static_cast<std::size_t>(contacts.count_);
+  const std::size_t padded = (count + kColumnLanes - 1) / kColumnLanes * kColumnLanes;
+  for (int row = 0; row < kSolvedContactRows; ++row) {
+    double* const at = contacts.solved_[row];
+    std::fill(at + count, at + padded, at[count - 1]);
+  }
+  differentiate_contacts(instruction_set_, *tables_, count, contacts.solved_, contacts.slopes_);
 }
 
 }  // namespace tribodyn

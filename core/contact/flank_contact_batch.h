@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/contact/contact_slopes.h"
 #include "core/contact/flank_contact.h"
 #include "core/model_options.h"
 #include "core/numerics/instruction_set.h"
@@ -33,6 +34,7 @@ class ContactGeometries {
 
  private:
   friend class FlankContactBatch;
+  friend class DifferentiatedContacts;
 
   double reduced_modulus_;
   HertzSolution hertz_solution_;
@@ -74,6 +76,34 @@ struct FlankContactBatchResults {
   double* limiting_stress_area_share = nullptr;  ///< [-]
   bool* limiting_stress_at_centre = nullptr;
   ContactStatus* status = nullptr;
+  bool* by_reference = nullptr;  ///< FlankContactModel solved it
+};
+
+/// Contacts that FlankContactBatch has solved without the reference, and their derivatives.
+class DifferentiatedContacts {
+ public:
+  /// Removes all and makes room for so many.
+  void clear(std::size_t room);
+  int size() const { return count_; }
+
+  /// What a solution has found of a contact, as in FlankContactBatchResults.
+  struct Solved {
+    double film_load, contact_temperature, mean_shear_stress, limiting_stress_area_share;
+  };
+  /// Adds a contact with the geometry of number i of `geometries`. Both surfaces must move. Returns
+  /// the contact's place in the rows of slopes().
+  int add(const ContactGeometries& geometries, std::size_t i, const ContactConditions& conditions,
+          const Solved& solved);
+
+  /// Once FlankContactBatch::differentiate() has filled them in.
+  const ContactSlopes& slopes() const { return slopes_; }
+
+ private:
+  friend class FlankContactBatch;
+
+  int count_ = 0;
+  Columns solved_;  // SolvedContactRow
+  ContactSlopes slopes_;
 };
 
 /// The friction kernel of FlankContactModel for many contacts at once.
@@ -130,6 +160,10 @@ class FlankContactBatch {
   std::size_t solve(const ContactGeometries& geometries, std::size_t first, std::size_t count,
                     const FlankContactBatchConditions& conditions,
                     const FlankContactBatchResults& results) const;
+
+  /// Fills in the derivatives of contacts that solve() has solved, not by the reference: those that
+  /// ContactSensitivityModel has by conditions, and by ContactLevel instead of by parameters.
+  void differentiate(DifferentiatedContacts& contacts) const;
 
  private:
   struct Tables;

@@ -18,19 +18,10 @@ double inside_cycle(double phase) { return phase - std::floor(phase); }
 
 }  // namespace
 
-FixedStepMarch::FixedStepMarch(GearPairSystem& system, const MarchScales& scales,
-                               const MeshGrid& grid, int period, bool solve_wheel_torque,
-                               double event_tolerance, InstructionSet instruction_set)
-    : system_(system),
-      scales_(scales),
-      grid_(grid),
-      period_(period),
-      event_tolerance_(event_tolerance),
-      instruction_set_(instruction_set) {
+SensitivityConstants driveline_constants(const GearPairSystem& system) {
   const DrivelineDynamics& d = system.dynamics();
   const MeshData& mesh = system.mesh();
-  SensitivityConstants& c = constants_;
-  c = {};
+  SensitivityConstants c{};
   c.per_pinion_inertia = 1 / d.pinion_inertia;
   c.per_gear_inertia = 1 / d.gear_inertia;
   c.pinion_radius = mesh.mean_pinion_contact_radius();
@@ -41,6 +32,20 @@ FixedStepMarch::FixedStepMarch(GearPairSystem& system, const MarchScales& scales
   c.gear_shaft_damping = d.gear_shaft_damping;
   c.per_pinion_shaft_inertia = 1 / d.pinion_shaft_inertia;
   c.per_wheel_inertia = 1 / d.wheel_inertia;
+  return c;
+}
+
+FixedStepMarch::FixedStepMarch(GearPairSystem& system, const MarchScales& scales,
+                               const MeshGrid& grid, int period, bool solve_wheel_torque,
+                               double event_tolerance, InstructionSet instruction_set)
+    : system_(system),
+      scales_(scales),
+      grid_(grid),
+      period_(period),
+      event_tolerance_(event_tolerance),
+      instruction_set_(instruction_set),
+      constants_(driveline_constants(system)) {
+  SensitivityConstants& c = constants_;
   (solve_wheel_torque ? c.wheel_per_torque : c.pinion_shaft_per_torque) =
       solve_wheel_torque ? -c.per_wheel_inertia : c.per_pinion_shaft_inertia;
 }

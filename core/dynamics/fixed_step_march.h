@@ -13,6 +13,9 @@
 
 namespace tribodyn {
 
+/// What variational equations need of a driveline, without an unknown torque.
+SensitivityConstants driveline_constants(const GearPairSystem& system);
+
 /// Classical Runge-Kutta steps of even length over mesh phase, under lagged friction. Steps end on
 /// contact loss, regain and load events, which are located on true steps.
 ///

@@ -181,6 +181,10 @@ class GearPairSystem {
   }
   template <class Real>
   void kinematics(const MeshPhase& phase, const Real* state, MechanicsOf<Real>& out) const;
+  /// dR_g/d winding [-].
+  double gear_radius_by_winding(const MeshPhase& phase, double winding) const {
+    return lag_per_winding_ * mesh_.gear_radius_by_lag(phase, lag_per_winding_ * winding);
+  }
   /// Mesh phase [cycles].
   MeshPhase at_phase(double phase) const;
 

@@ -46,19 +46,6 @@ std::array<const double*, 3> states(const OrbitPiece& piece) {
   return {piece.start.data(), piece.middle.data(), piece.end.data()};
 }
 
-/// Fills in the first place of each of the pieces, which have three: one that goes on from the
-/// piece before shares its last. Returns the number of places.
-int number_places(const std::vector<OrbitPiece>& pieces, std::vector<int>& first) {
-  first.resize(pieces.size());
-  int count = 0;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (i > 0 && goes_on(pieces[i - 1], pieces[i])) --count;
-    first[i] = count;
-    count += 3;
-  }
-  return count;
-}
-
 /// Mechanics, loads and motion of the flanks at part 0, 1, 2 of a piece: its start, middle, end.
 /// Tells of each loaded contact: on_contact(flank pair, its kinematics, its conditions).
 template <class OnContact>
@@ -102,8 +89,20 @@ constexpr SolvedRow kSolvedRows[] = {
     {&FlankContactBatchResults::limiting_stress_area_share,
      &ContactFigures::limiting_stress_area_share},
     {&FlankContactBatchResults::asperity_load, &ContactFigures::asperity_load}};
+constexpr std::size_t kFilmLoadRow = std::size(kSolvedRows);  // which ContactFigures lack
 
 }  // namespace
+
+int number_instants(const std::vector<OrbitPiece>& pieces, std::vector<int>& first) {
+  first.resize(pieces.size());
+  int count = 0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (i > 0 && goes_on(pieces[i - 1], pieces[i])) --count;
+    first[i] = count;
+    count += 3;
+  }
+  return count;
+}
 
 const std::array<FlankKinematics, kFlankPairs>& flanks_of(
     const MeshData& mesh, const MeshGrid& grid, const OrbitPiece& piece, int part,
@@ -118,17 +117,22 @@ const std::array<FlankKinematics, kFlankPairs>& flanks_of(
 
 void SolvedContacts::resize(std::size_t count) {
   if (count <= size_) return;
-  rows_.resize(std::size(kSolvedRows), count);
+  rows_.resize(kFilmLoadRow + 1, count);
   limiting_stress_at_centre_ = std::make_unique<bool[]>(count);
+  by_reference_ = std::make_unique<bool[]>(count);
   size_ = count;
 }
 
 FlankContactBatchResults SolvedContacts::results() {
   FlankContactBatchResults out;
   for (std::size_t r = 0; r < std::size(kSolvedRows); ++r) out.*kSolvedRows[r].array = rows_[r];
+  out.film_load = rows_[kFilmLoadRow];
   out.limiting_stress_at_centre = limiting_stress_at_centre_.get();
+  out.by_reference = by_reference_.get();
   return out;
 }
+
+double SolvedContacts::film_load(std::size_t i) const { return rows_[kFilmLoadRow][i]; }
 
 void SolvedContacts::copy(std::size_t i, ContactFigures& to) const {
   to.status = ContactStatus::kOk;
@@ -139,7 +143,7 @@ void SolvedContacts::copy(std::size_t i, ContactFigures& to) const {
 SolvedPieces solved_pieces(GearPairSystem& system, const MeshGrid& grid,
                            const std::vector<OrbitPiece>& pieces, const SolvedContacts& contacts) {
   SolvedPieces out;
-  out.instants.resize(number_places(pieces, out.first));
+  out.instants.resize(number_instants(pieces, out.first));
   int n = 0, contact = 0;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     for (int part = n - out.first[i]; part < 3; ++part, ++n) {
@@ -177,7 +181,7 @@ OrbitFriction::OrbitFriction(GearPairSystem& system, const FlankContactBatch& co
       geometries_(contacts.model().reduced_modulus(), contacts.model().options()) {}
 
 int OrbitFriction::gather(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces) {
-  places_.resize(number_places(pieces, first_));
+  places_.resize(number_instants(pieces, first_));
   const std::size_t most = kFlankPairs * places_.size();
   if (geometries_.size() < most) geometries_.resize(most);
   seen_.resize(kSeenRows, most);

@@ -26,6 +26,11 @@ struct OrbitPiece {
   MarchState start, middle, end;
 };
 
+/// The state at part 0, 1, 2 of a piece: its start, middle, end.
+inline const MarchState& state_of(const OrbitPiece& piece, int part) {
+  return part == 0 ? piece.start : part == 1 ? piece.middle : piece.end;
+}
+
 /// The flank pairs at part 0, 1, 2 of a piece: its start, middle, end. `grid`: what the piece's
 /// node is of; `off_grid` holds them where the piece has none.
 const std::array<FlankKinematics, kFlankPairs>& flanks_of(
@@ -41,10 +46,12 @@ class SolvedContacts {
   FlankContactBatchResults results();
   const double* friction() const { return rows_[0]; }
   void copy(std::size_t i, ContactFigures& to) const;
+  double film_load(std::size_t i) const;                               ///< W_EHL [N]
+  bool by_reference(std::size_t i) const { return by_reference_[i]; }  ///< not by the vector code
 
  private:
   Columns rows_;
-  std::unique_ptr<bool[]> limiting_stress_at_centre_;
+  std::unique_ptr<bool[]> limiting_stress_at_centre_, by_reference_;
   std::size_t size_ = 0;
 };
 
@@ -62,6 +69,10 @@ struct SolvedPieces {
 /// `grid`: what the pieces' nodes are of; `contacts`: all of theirs. Changes the system's regime.
 SolvedPieces solved_pieces(GearPairSystem& system, const MeshGrid& grid,
                            const std::vector<OrbitPiece>& pieces, const SolvedContacts& contacts);
+
+/// Fills in the first instant of each of the pieces: where SolvedPieces has it, and the contacts of
+/// SolvedContacts in the same order. Returns the number of instants.
+int number_instants(const std::vector<OrbitPiece>& pieces, std::vector<int>& first);
 
 /// What a sweep reports of a response: enough to tell how much an answer moved.
 struct OrbitFigures {

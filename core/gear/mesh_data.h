@@ -120,23 +120,16 @@ class MeshData {
     return f;
   }
 
-  /// The same of a lag that is a dual number.
-  template <class Real>
-  requires requires(const Real& lag) { lag.value; }
-  MeshFunctionsOf<Real> functions(const MeshPhase& phase, const Real& lag) const {
+  /// dR_g/dlag [m/rad].
+  double gear_radius_by_lag(const MeshPhase& phase, double lag) const {
+    const double x = phase.offset - lag;
+    if (phase.expansion != nullptr && std::abs(x) <= reach_) {
+      return -phase.expansion->slope_at(MeshExpansion::kGearRadius, x);
+    }
     constexpr double kStep = 1e-5;  // [rad]: error 1e-10 of the ripple of R_g, itself 4e-3 of R_g
-    const MeshFunctions f = functions(phase, lag.value);
-    const double radius_by_lag = (functions(phase, lag.value + kStep).gear_contact_radius -
-                                  functions(phase, lag.value - kStep).gear_contact_radius) /
-                                 (2 * kStep);
-    const double integral_by_lag = (f.gear_contact_radius - gear_radius_) / gear_teeth_;
-    return {f.pinion_contact_radius,
-            chained(f.gear_contact_radius, radius_by_lag, lag),
-            chained(f.radius_integral, integral_by_lag, lag),
-            f.mesh_stiffness,
-            f.mesh_stiffness_slope,
-            f.static_transmission_error,
-            f.static_transmission_error_slope};
+    return (functions(phase, lag + kStep).gear_contact_radius -
+            functions(phase, lag - kStep).gear_contact_radius) /
+           (2 * kStep);
   }
 
   /// The expansion around the angle that is nearest to theta, and how far theta is from there. Null

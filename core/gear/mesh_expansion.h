@@ -38,6 +38,13 @@ struct MeshExpansion {
     }
     return out;
   }
+
+  /// d function/dx at a distance x from the angle.
+  double slope_at(Function function, double x) const {
+    double out = 0;
+    for (int k = kTerms - 1; k > 0; --k) out = out * x + k * term[k][function];
+    return out;
+  }
 };
 
 }  // namespace tribodyn

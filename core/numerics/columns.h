@@ -21,6 +21,7 @@ class Columns {
   }
   double* operator[](std::size_t row) { return values_.data() + row * stride_; }
   const double* operator[](std::size_t row) const { return values_.data() + row * stride_; }
+  std::size_t stride() const { return stride_; }  ///< from row to row
 
  private:
   std::size_t stride_ = 0;

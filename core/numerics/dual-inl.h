@@ -207,11 +207,11 @@ HWY_INLINE double value_of(const Dual<double, kCount>& x) {
 /// The root of a function at which an iteration has arrived, with derivatives by all variables but
 /// the last, by one Newton step in dual numbers (implicit function theorem). `function` is called
 /// once with the root as the last variable, which must be free for it.
-template <int kCount, class Function>
-Dual<double, kCount> root_with_slopes(double at, Function&& function) {
-  using Number = Dual<double, kCount>;
+template <int kCount, class Real, class Function>
+Dual<Real, kCount> root_with_slopes(Real at, Function&& function) {
+  using Number = Dual<Real, kCount>;
   const Number residual = function(Number::variable(at, kCount - 1));
-  Number out = chained(at, -1 / residual.slope[kCount - 1], residual);
+  Number out = chained(at, -1.0 / residual.slope[kCount - 1], residual);
   out.value = at;
   out.slope[kCount - 1] = 0;
   return out;

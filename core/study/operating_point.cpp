@@ -174,7 +174,7 @@ std::optional<PointResult> solve_by_shooting(
   // With data at the torque an orbit's gear set depends on its torque, which is not differentiated.
   if (options.sensitivities && !system.options().load_dependent_mesh_data) {
     sensitivity = orbit_sensitivity(system, grids.with_steps(refined->steps_per_mesh_cycle),
-                                    ContactSensitivityModel(contacts.model()), orbit,
+                                    contacts, orbit,
                                     target.mean_pinion_speed, target.solve_wheel_torque);
   }
   out.statistics.right_hand_sides = statistics.right_hand_sides;
@@ -476,7 +476,7 @@ PointFigures figures_at(PreparedScene& prepared, const OperatingCondition& condi
       }
       if (options.sensitivities) {
         const auto sensitivity = orbit_sensitivity(
-            system, gear_set.grids().with_steps(steps), ContactSensitivityModel(contacts.model()),
+            system, gear_set.grids().with_steps(steps), contacts,
             orbit, target.mean_pinion_speed, target.solve_wheel_torque);
         if (sensitivity) {
           figures.sensitivities =

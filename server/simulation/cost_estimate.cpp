@@ -13,9 +13,9 @@ struct Work {
 };
 
 constexpr double kPreparationSeconds = 0.26e-3;  // [s] for each scene
-constexpr double kSensitivitySeconds = 4e-3;     // [s] for each point, at the usual tolerance
+constexpr double kSensitivitySeconds = 0.2e-3;   // [s] for each point, at the usual tolerance
 constexpr double kContactFiguresFactor = 1.4;    // of a screened point (measured)
-constexpr double kElasticitySeconds = 0.9e-3;    // [s] for each screened point (measured)
+constexpr double kElasticitySeconds = 0.1e-3;    // [s] for each screened point (measured)
 constexpr double kUsualTolerance = 1e-3;
 constexpr Work kQuasiStaticPoint{340, 0.25e-6};  // at the usual tolerance
 constexpr double kQuasiStaticOrder = 0.4;        // exponent of their growth with 1 / tolerance

@@ -238,6 +238,106 @@ TEST(ContactSensitivity, OfABatchsSolutionIsThatOfTheReference) {
   }
 }
 
+/// Elasticities of friction, contact temperature and film ratio by the vector code, through the
+/// levels, against those of dual numbers one by one. Returns the largest difference; -1 where the
+/// reference solves the contact.
+double difference_side_by_side(const ContactCase& c, InstructionSet set) {
+  const FlankContactModel model = c.model();
+  const FlankContactBatch batch(model, set);
+  ContactArrays arrays({c.conditions}, c.solid, c.options);
+  bool by_reference = false;
+  FlankContactBatchResults results = arrays.results();
+  results.by_reference = &by_reference;
+  batch.solve(arrays.geometries(), 0, 1, arrays.conditions(), results);
+  if (arrays.solution(0).status != ContactStatus::kOk || by_reference) return -1;
+  DifferentiatedContacts contacts;
+  contacts.clear(1);
+  contacts.add(arrays.geometries(), 0, c.conditions,
+               {*results.film_load, *results.contact_temperature, *results.mean_shear_stress,
+                *results.limiting_stress_area_share});
+  batch.differentiate(contacts);
+  const ContactSensitivityModel sensitivity(model);
+  const ContactSensitivity expected =
+      sensitivity.at(c.conditions, *results.film_load, *results.contact_temperature);
+  EXPECT_EQ(expected.status, SensitivityStatus::kOk);
+  Contact copy(c);
+  const auto inputs = contact_inputs(copy.parameters, copy.conditions);
+  const auto& levels = sensitivity.levels_by_parameter();
+  double largest = 0;
+  const auto compare = [&](const Columns& rows, int row_count,
+                           const ContactDerivatives& one_by_one) {
+    const auto compare_one = [&](int input, double found) {
+      const double scale = *inputs[input] / one_by_one.value;
+      const double exact = one_by_one.by[input] * scale;
+      largest = std::max(largest, std::abs(found * scale - exact) / std::max(1.0, std::abs(exact)));
+    };
+    for (int p = 0; p < kContactParameters; ++p) {
+      double sum = 0;
+      for (int r = kConditionSlopes; r < row_count; ++r) {
+        sum += rows[r][0] * levels[r - kConditionSlopes][p];
+      }
+      compare_one(p, sum);
+    }
+    int row = 0;
+    for (const ContactInput input :
+         {ContactInput::kLoad, ContactInput::kVelocity1X, ContactInput::kVelocity1Y,
+          ContactInput::kVelocity2X, ContactInput::kVelocity2Y}) {
+      compare_one(static_cast<int>(input), rows[row++][0]);
+    }
+  };
+  compare(contacts.slopes().friction, kContactSlopes, expected.friction);
+  compare(contacts.slopes().temperature, kContactSlopes, expected.contact_temperature);
+  compare(contacts.slopes().film_ratio, kFilmSlopes, expected.film_ratio);
+  return largest;
+}
+
+// The solution of the vector code is within 1e-10 of the reference's, and derivatives magnify that.
+constexpr double kSideBySide = 1e-7;
+
+TEST(ContactSensitivity, IsTheSameSideBySideOnRandomStates) {
+  Draw draw(902);
+  int compared = 0;
+  double worst = 0;
+  for (int n = 0; n < kRandomStates; ++n) {
+    ContactCase c = random_contact_case(draw);
+    c.options.hertz_solution = n % 2 == 0 ? HertzSolution::kSimplified : HertzSolution::kExact;
+    c.options.isothermal = n % 10 == 3;
+    c.options.newtonian = n % 10 == 5;
+    c.options.no_limiting_shear_stress = n % 10 == 7;
+    c.options.no_boundary_friction = n % 20 == 9;
+    c.options.inlet_shear_heating = n % 4 >= 2;
+    for (const InstructionSet set : supported_instruction_sets()) {
+      const double difference = difference_side_by_side(c, set);
+      EXPECT_LT(difference, kSideBySide)
+          << "state " << n << ", " << FlankContactBatch::name(set) << ", " << draw.seed();
+      compared += difference >= 0;
+      worst = std::max(worst, difference);
+    }
+  }
+  EXPECT_GT(compared, kRandomStates / 2);
+  RecordProperty("worst", std::to_string(worst));
+}
+
+TEST(ContactSensitivity, IsTheSameSideBySideInTheGearUnderBothLaws) {
+  for (const bool yasutomi : {false, true}) {
+    int compared = 0;
+    for (const double load : {5.0, 50.0, 500.0, 3000.0}) {
+      for (const double sump : {283.15, 313.15, 363.15}) {
+        ContactCase c;
+        if (yasutomi) set_yasutomi(gear_oil_80w90(), c.lubricant);
+        c.conditions.load = load;
+        c.sump_temperature = sump;
+        for (const InstructionSet set : supported_instruction_sets()) {
+          const double difference = difference_side_by_side(c, set);
+          compared += difference >= 0;
+          EXPECT_LT(difference, kSideBySide) << yasutomi << ", " << load << " N, " << sump << " K";
+        }
+      }
+    }
+    EXPECT_GE(compared, 6) << yasutomi;
+  }
+}
+
 TEST(ContactSensitivity, SaysWhereDerivativesDoNotExist) {
   const auto status = [](auto&& change) {
     Contact contact{ContactCase{}};

@@ -208,8 +208,8 @@ std::optional<ElasticityComparison> compare_elasticities(const DifferentiatedPla
   if (!bench.find(point, orbit)) return std::nullopt;
   const auto base = bench.figures(orbit);
   const auto sensitivity =
-      orbit_sensitivity(bench.system, bench.grid, ContactSensitivityModel(bench.contacts.model()),
-                        orbit, at.target.mean_pinion_speed, at.target.solve_wheel_torque);
+      orbit_sensitivity(bench.system, bench.grid, bench.contacts, orbit,
+                        at.target.mean_pinion_speed, at.target.solve_wheel_torque);
   if (!base || !sensitivity) return std::nullopt;
   ElasticityComparison out;
   out.one_sided = sensitivity->one_sided;
