@@ -76,8 +76,10 @@ void set_candidate(const Candidate& candidate, const std::string& owner, const s
     if (source.size() > kLongestSource) source = "as in " + base;
     entry.set_source(std::move(source));
   }
+  // The parameters of a candidate that is a lubricant are those of its base.
+  const bool is_lubricant = !candidate.table.candidate_lubricants().empty();
   for (const v1::CandidateColumn& column : candidate.table.candidate_columns()) {
-    if (!column.path().starts_with(owner)) continue;
+    if (is_lubricant || !column.path().starts_with(owner)) continue;
     const std::string name = column.path().substr(owner.size());
     Message& holder = holder_of(name, resource);
     const FieldDescriptor* field =
@@ -198,7 +200,10 @@ Outcome<v1::PromoteCandidateResponse> promote_candidate(Application& application
   std::optional<v1::Surface> surface;
   if (!request.lubricant_id().empty()) {
     auto out = promoted<v1::Lubricant>(application, request, candidate, request.lubricant_id(),
-                                       stored.lubricant_revision, call, violations);
+                                       table.candidate_lubricants().empty()
+                                           ? stored.lubricant_revision
+                                           : table.candidate_lubricants(request.candidate()),
+                                       call, violations);
     if (!out.ok()) return out.error();
     lubricant = std::move(out.message());
   }

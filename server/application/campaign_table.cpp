@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 
 #include "server/application/campaigns.h"
 #include "server/application/column_source.h"
 #include "server/application/errors.h"
+#include "server/application/row_filter.h"
 #include "server/application/table_columns.h"
 #include "server/contract/constraints.h"
 #include "server/mapping/history_columns.h"
@@ -15,13 +15,12 @@
 namespace tribodyn::server {
 namespace {
 
-constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
-
 /// Rows of some columns.
 struct TableWindow {
   std::vector<TableColumn> columns;
   std::int64_t start_row = 0;
   std::int64_t end_row = 0;
+  std::vector<RowCondition> conditions;  ///< of the rows; empty: all
 };
 
 class CampaignSource final : public ColumnSource<v1::ReadCampaignResponse> {
@@ -29,13 +28,16 @@ class CampaignSource final : public ColumnSource<v1::ReadCampaignResponse> {
   CampaignSource(Application& application, const StoredCampaign& stored, TableWindow window,
                  const CallContext& call)
       : ColumnSource(application, window.columns.size()),
-        store_(application.store),
-        limits_{.cancelled = call.limits.cancelled},
-        campaign_(stored.id),
-        conditions_(stored.conditions),
-        total_rows_(stored.points()),
+        campaign_rows_(application.store, stored,
+                       {.cancelled = call.limits.cancelled}),  // the end of the stream is its
+                                                               // transport's
         window_(std::move(window)) {
     rows_ = window_.end_row - window_.start_row;
+    if (window_.conditions.empty()) return;
+    campaign_rows_.freeze();
+    filter_.emplace(campaign_rows_, std::move(window_.conditions), window_.start_row,
+                    window_.end_row);
+    rows_ = filter_->size();
   }
 
  private:
@@ -50,45 +52,18 @@ class CampaignSource final : public ColumnSource<v1::ReadCampaignResponse> {
     }
     out.set_start_row(window_.start_row);
     out.set_row_count(rows_);
-    out.set_total_rows(total_rows_);
+    out.set_total_rows(campaign_rows_.total());
   }
 
   std::vector<double> read(std::size_t place, std::int64_t first, std::int64_t count) override {
     const TableColumn& column = window_.columns[place];
-    std::vector<double> out(static_cast<std::size_t>(count), kNoValue);
-    const std::int64_t start = window_.start_row + first;
-    if (column.kind == TableColumn::Kind::kStored) {
-      if (column.number == 0) std::fill(out.begin(), out.end(), kNotComputed);
-      store_.read_campaign(campaign_, column.number, start, out, limits_);
-      return out;
-    }
-    for (std::int64_t i = 0; i < count; ++i) {
-      const std::int64_t candidate = (start + i) / conditions_;
-      const std::int64_t condition = (start + i) % conditions_;
-      double& value = out[static_cast<std::size_t>(i)];
-      switch (column.kind) {
-        case TableColumn::Kind::kCandidate:
-          value = static_cast<double>(candidate);
-          break;
-        case TableColumn::Kind::kCondition:
-          value = static_cast<double>(condition);
-          break;
-        case TableColumn::Kind::kPerCandidate:
-          value = column.values[static_cast<std::size_t>(candidate)];
-          break;
-        default:
-          value = column.values[static_cast<std::size_t>(condition)];
-      }
-    }
-    return out;
+    if (filter_) return filter_->read(column, first, count);
+    return campaign_rows_.read(column, window_.start_row + first, count);
   }
 
-  Store& store_;
-  const CallLimits limits_;  // the end of the stream is its transport's
-  const std::int64_t campaign_;
-  const std::int64_t conditions_;
-  const std::int64_t total_rows_;
-  const TableWindow window_;
+  CampaignRows campaign_rows_;
+  TableWindow window_;
+  std::optional<RowFilter> filter_;
 };
 
 std::optional<TableWindow> table_window(Application& application, const StoredCampaign& stored,
@@ -112,6 +87,7 @@ std::optional<TableWindow> table_window(Application& application, const StoredCa
     out.columns.push_back(std::move(*found));
   }
   if (request.columns().empty()) out.columns = columns.figures();
+  out.conditions = read_row_filter(request.filter(), columns, violations);
   const std::int64_t rows = stored.points();
   if (request.start_row() < 0 || request.start_row() > rows) {
     violations.push_back(

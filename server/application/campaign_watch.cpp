@@ -10,11 +10,13 @@
 namespace tribodyn::server {
 namespace {
 
-/// Differs between two states of a campaign that clients can tell apart: rows only come, and
-/// without new rows only the state changes.
+/// Differs between two states of a campaign that clients can tell apart: candidates and rows only
+/// come, and without new ones only the state changes. Below 2^53, which JavaScript keeps exactly:
+/// of 25 bits for points, 25 for those that are done and 3 for the state.
 std::int64_t version_of(const CampaignProgress& progress) {
-  constexpr std::int64_t kStates = 8;
-  return progress.points_done * kStates + static_cast<std::int64_t>(progress.state);
+  constexpr std::int64_t kStates = 8, kPoints = std::int64_t{1} << 25;
+  return (progress.points * kPoints + progress.points_done) * kStates +
+         static_cast<std::int64_t>(progress.state);
 }
 
 /// How far one campaign is. Holds nothing but the present state, so that a slow reader costs no

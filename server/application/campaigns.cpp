@@ -9,12 +9,16 @@
 #include <optional>
 
 #include "core/version.h"
+#include "server/application/computed_fields.h"
 #include "server/application/errors.h"
+#include "server/application/list_filter.h"
 #include "server/application/page_token.h"
 #include "server/application/paging.h"
 #include "server/application/project_space.h"
 #include "server/application/request_text.h"
 #include "server/contract/check_message.h"
+#include "server/contract/constraints.h"
+#include "server/contract/labels.h"
 #include "server/contract/output_only.h"
 #include "server/simulation/campaign_inputs.h"
 #include "server/simulation/result_key.h"
@@ -26,6 +30,8 @@ namespace {
 
 constexpr int kDefaultCampaignPage = 50;
 constexpr int kCampaignDeletions = 10;  // attempts, against others that resume it
+constexpr int kCampaignWrites = 10;     // attempts, against other writers
+constexpr std::size_t kMaximumSearchedBytes = 256 << 20;
 constexpr char kCampaignType[] = "tribodyn.v1.Campaign";
 
 static_assert(static_cast<int>(CampaignState::kRunning) == v1::Campaign::RUNNING);
@@ -111,6 +117,31 @@ std::string request_hash(const v1::Campaign& campaign) {
   return sha256(campaign.SerializeAsString());
 }
 
+/// Leaves in a stored campaign what its request stated, as far as `stated`, another request under
+/// the same request_id, does not tell: candidates that were added later and what the server made.
+void keep_stated(const v1::Campaign& stated, int created_candidates, v1::Campaign& earlier) {
+  const bool is_of_lubricants = has_lubricants(earlier, earlier);
+  keep_first_candidates(created_candidates, earlier);
+  if (earlier.has_candidate_design() || is_of_lubricants) earlier.clear_candidate_columns();
+  auto& attributes = *earlier.mutable_candidate_attributes();
+  for (int i = attributes.size() - 1; i >= 0; --i) {
+    if (is_of_lubricants && is_made_attribute(attributes[i].name())) {
+      attributes.DeleteSubrange(i, 1);
+    }
+  }
+  auto& lubricants = *earlier.mutable_candidate_lubricants();
+  if (!earlier.lubricant_filter().empty()) lubricants.Clear();
+  for (int i = 0; i < std::min(lubricants.size(), stated.candidate_lubricants_size()); ++i) {
+    const bool names_revision = stated.candidate_lubricants(i).find('@') != std::string::npos;
+    if (!names_revision) lubricants[i].resize(lubricants[i].find('@'));
+  }
+  if (stated.lubricant().empty() && is_of_lubricants) earlier.clear_lubricant();
+  if (earlier.has_candidate_design() && stated.candidate_design().algorithm_version() == 0) {
+    earlier.mutable_candidate_design()->clear_algorithm_version();
+  }
+  // Name and labels may have changed since; where they alone seem to differ, they are named.
+}
+
 google::rpc::Status campaign_request_id_taken(Application& application,
                                               const StoredCampaign& stored,
                                               const v1::CreateCampaignRequest& request,
@@ -118,6 +149,7 @@ google::rpc::Status campaign_request_id_taken(Application& application,
   v1::Campaign earlier;
   earlier.ParseFromString(stored.request);
   earlier.MergeFromString(application.store.candidate_table(stored.id, call.limits));
+  keep_stated(stated, application.store.created_candidates(stored.id, call.limits), earlier);
   std::string field = "none";
   const auto& type = *v1::Campaign::descriptor();
   for (int i = 0; i < type.field_count(); ++i) {
@@ -145,6 +177,12 @@ Outcome<v1::Campaign> repeated_answer(Application& application, const StoredCamp
   return to_message(application, stored);
 }
 
+CampaignLabels labels_of(const v1::Campaign& campaign) {
+  CampaignLabels out;
+  for (const v1::Label& each : campaign.labels()) out.emplace_back(each.key(), each.value());
+  return out;
+}
+
 NewCampaign new_campaign(const v1::CreateCampaignRequest& request, const CampaignInputs& inputs,
                          const std::string& hash, const CallContext& call) {
   const v1::Simulation& effective = inputs.points.base.effective;
@@ -167,6 +205,25 @@ NewCampaign new_campaign(const v1::CreateCampaignRequest& request, const Campaig
   out.gear_set_revision = effective.gear_set_revision();
   out.surface_revision = effective.surface_revision();
   out.vehicle_revision = effective.vehicle_revision();
+  out.labels = labels_of(inputs.requested);
+  out.candidate_lubricants = {inputs.table.candidate_lubricants().begin(),
+                              inputs.table.candidate_lubricants().end()};
+  return out;
+}
+
+/// Returns the campaign with candidates that a request with validate_only would add.
+v1::Campaign append_preview(Application& application, const StoredCampaign& stored,
+                            const NewCandidates& candidates) {
+  v1::Campaign out = to_message(application, stored);
+  if (stored.state == CampaignState::kSucceeded) {
+    out.set_state(v1::Campaign::RUNNING);
+    out.clear_end_time();
+    out.clear_expire_time();
+  }
+  out.set_candidates(candidates.candidates);
+  out.set_points(candidates.candidates * stored.conditions);
+  out.set_input_hash(candidates.input_hash);
+  out.mutable_cost_estimate()->set_processor_seconds(candidates.cost_seconds);
   return out;
 }
 
@@ -191,6 +248,120 @@ google::rpc::Status campaign_turned_away(Application& application) {
                                "try again in {:g} s",
                                kRetrySeconds),
                    kRetrySeconds);
+}
+
+/// Returns the search of the lubricants that satisfy a filter, as ListLubricants finds them.
+LubricantSearch lubricant_search(Application& application, const CallContext& call) {
+  return [&application, &call](const std::string& filter, Violations& violations) {
+    ResourceQuery query;
+    query.project = call.project;
+    query.collection = kLubricants;
+    query.limit = kMaximumCandidateLubricants + 1;
+    query.byte_limit = kMaximumSearchedBytes;
+    query.restrictions = parse_filter(filter, query.collection, violations);
+    std::vector<std::string> out;
+    if (!violations.empty()) return out;
+    const auto read_page = [&](const ResourceQuery& stored) {
+      return application.store.resources(stored, call.limits);
+    };
+    const Page<StoredResource> page = needs_computed_fields(query)
+                                          ? query_by_computed_fields(query, read_page)
+                                          : read_page(query);
+    if (page.more && page.rows.size() <= static_cast<std::size_t>(kMaximumCandidateLubricants)) {
+      violations.push_back({"filter", fmt::format("the lubricants are larger than {} MB together; "
+                                                  "allowed: fewer",
+                                                  kMaximumSearchedBytes >> 20U)});
+    }
+    for (const StoredResource& each : page.rows) {
+      out.push_back(revision_name(relative_name(each.name), each.revision));
+    }
+    return out;
+  };
+}
+
+/// Copies the display name and the labels that the request changes into `target`.
+void take_over_campaign_labels(const v1::UpdateCampaignRequest& request, v1::Campaign& target,
+                               Violations& violations) {
+  const v1::Campaign& stated = request.campaign();
+  const auto& paths = request.update_mask().paths();
+  const bool is_all = paths.size() == 1 && paths.Get(0) == "*";
+  bool takes_name = is_all || (paths.empty() && !stated.display_name().empty());
+  bool takes_labels = is_all || (paths.empty() && stated.labels_size() > 0);
+  for (int i = 0; i < paths.size() && !is_all; ++i) {
+    if (paths.Get(i) == "display_name") {
+      takes_name = true;
+    } else if (paths.Get(i) == "labels") {
+      takes_labels = true;
+    } else {
+      violations.push_back({"update_mask", fmt::format("\"{}\" cannot be changed; allowed: "
+                                                       "display_name, labels, *",
+                                                       plain_excerpt(paths.Get(i)))});
+      return;
+    }
+  }
+  if (takes_name) target.set_display_name(stated.display_name());
+  if (takes_labels) *target.mutable_labels() = stated.labels();
+  sort_labels(*target.mutable_labels());
+  v1::Campaign changed;  // a request of an older server may break newer constraints of other fields
+  changed.set_display_name(target.display_name());
+  *changed.mutable_labels() = target.labels();
+  check_message(changed, "campaign", violations);
+  if (target.labels_size() <= kMaximumSimulationLabels) {
+    check_labels(target.labels(), "campaign.labels", violations);
+  }
+}
+
+/// Reads the filter of a list of campaigns.
+std::vector<Restriction> campaign_restrictions(const std::string& filter, Violations& violations) {
+  std::vector<Restriction> out = parse_filter(filter, kCampaigns, violations);
+  for (Restriction& each : out) {
+    using enum Restriction::Comparison;
+    const bool is_label = each.key.starts_with("labels.");
+    const bool is_equality = each.comparison == kEqual || each.comparison == kNotEqual;
+    if (each.key == "name") {
+      violations.push_back({"filter", "lists cannot be filtered by name; use GetCampaign"});
+    } else if (!is_equality && !(is_label && each.comparison == kPresent) &&
+               !(each.key == "display_name" && each.comparison == kContains)) {
+      violations.push_back({"filter", each.key + ": allowed: = or !=, of labels also :*, of "
+                                                 "display_name also :"});
+    }
+    const std::string* word = std::get_if<std::string>(&each.value);
+    v1::Campaign::State state = v1::Campaign::STATE_UNSPECIFIED;
+    if (each.key == "state" && word != nullptr && v1::Campaign::State_Parse(*word, &state)) {
+      each.value = std::int64_t{state};
+    }
+  }
+  return out;
+}
+
+/// Why no candidates can be added to a campaign; nullopt if they can.
+std::optional<google::rpc::Status> not_appendable(const StoredCampaign& stored,
+                                                  const std::string& name) {
+  if (stored.state > CampaignState::kSucceeded) {
+    const std::string state =
+        v1::Campaign::State_Name(static_cast<v1::Campaign::State>(stored.state));
+    return not_possible(v1::ERROR_REASON_ENDED, kCampaignType, name,
+                        fmt::format("{} is {}; candidates can be added to a campaign that is "
+                                    "RUNNING, PAUSED or SUCCEEDED. Create another one",
+                                    name, state),
+                        {{"state", state}});
+  }
+  if (stored.model_version == kModelVersion && stored.platform == platform()) return std::nullopt;
+  return not_possible(
+      v1::ERROR_REASON_MODEL_CHANGED, kCampaignType, name,
+      fmt::format("the rows of {} are of model {} on {}, this server computes model {} on {}; "
+                  "create another campaign",
+                  name, stored.model_version, stored.platform, kModelVersion, platform()),
+      {{"model_version", stored.model_version}});
+}
+
+google::rpc::Status append_id_taken(const v1::AppendCandidatesRequest& request) {
+  return already_exists(
+      v1::ERROR_REASON_REQUEST_ID_REUSED, kCampaignType, request.name(),
+      fmt::format("request_id \"{}\" added other candidates to {}; take another one",
+                  request.request_id(), request.name()),
+      {{"request_id", request.request_id()}, {"field", "candidate_columns"}},
+      {{"request_id", "belongs to another request, with other candidates"}});
 }
 
 /// The answer to a request that changed a campaign's state.
@@ -233,7 +404,7 @@ Outcome<v1::Campaign> create_campaign(Application& application,
   }
   const auto inputs =
       read_campaign(stated, resource_lookup(application.store, call.project, call.limits),
-                    "campaign", violations);
+                    "campaign", violations, lubricant_search(application, call));
   if (!inputs) return invalid(violations);
   const NewCampaign campaign = new_campaign(request, *inputs, request_hash(stated), call);
   if (request.validate_only()) return campaign_preview(*inputs, campaign);
@@ -278,8 +449,9 @@ Outcome<v1::ListCampaignsResponse> list_campaigns(Application& application,
                                                   const CallContext& call) {
   Violations violations;
   const int size = page_size(request.page_size(), kDefaultCampaignPage, violations);
-  const std::string scope = full_name(call.project, kCampaigns);
+  const std::string scope = full_name(call.project, kCampaigns) + "\n" + request.filter();
   std::int64_t before = 0;
+  std::vector<Restriction> restrictions = campaign_restrictions(request.filter(), violations);
   if (!request.page_token().empty()) {
     const auto token = parse_page_token(application.page_token_key, scope, request.page_token());
     const auto number = token ? campaign_id(token->last.name) : std::nullopt;
@@ -287,8 +459,8 @@ Outcome<v1::ListCampaignsResponse> list_campaigns(Application& application,
     before = number.value_or(0);
   }
   if (!violations.empty()) return invalid(violations);
-  const Page<StoredCampaign> page =
-      application.store.campaigns(call.project, before, size, call.limits);
+  const Page<StoredCampaign> page = application.store.campaigns(
+      {call.project, std::move(restrictions), before, size}, call.limits);
   v1::ListCampaignsResponse response;
   response.set_total_size(clamped_total(page.total));
   std::size_t bytes = 0;
@@ -306,6 +478,88 @@ Outcome<v1::ListCampaignsResponse> list_campaigns(Application& application,
                                             {{last.number, relative_name(name_of(last))}, 0}));
   }
   return response;
+}
+
+Outcome<v1::Campaign> update_campaign(Application& application,
+                                      const v1::UpdateCampaignRequest& request,
+                                      const CallContext& call) {
+  const std::string& name = request.campaign().name();
+  for (int attempt = 0; attempt < kCampaignWrites; ++attempt) {
+    const auto found = find_campaign(application, name, call);
+    if (!found.ok()) return found.error();
+    v1::Campaign changed;
+    changed.ParseFromString(found.message().request);
+    Violations violations;
+    take_over_campaign_labels(request, changed, violations);
+    if (!violations.empty()) return invalid(violations);
+    const auto updated = application.store.relabel_campaign(
+        found.message(), changed.SerializeAsString(), labels_of(changed), call.limits);
+    if (updated) return to_message(application, *updated);
+  }
+  return contention(kCampaignType, name);
+}
+
+Outcome<v1::Campaign> append_candidates(Application& application,
+                                        const v1::AppendCandidatesRequest& request,
+                                        const CallContext& call) {
+  Violations violations;
+  check_request_id(request.request_id(), violations);
+  check_message(request, "", violations);
+  if (!violations.empty()) return invalid(violations);
+  v1::AppendCandidatesRequest stated = request;
+  stated.clear_name();
+  stated.clear_validate_only();
+  NewCandidates candidates;
+  candidates.request_id = request.request_id();
+  candidates.request_hash = sha256(stated.SerializeAsString());
+  for (int attempt = 0; attempt < kCampaignWrites; ++attempt) {
+    const auto found = find_campaign(application, request.name(), call);
+    if (!found.ok()) return found.error();
+    const StoredCampaign& stored = found.message();
+    // Before the state is checked: the campaign may have been cancelled since the earlier request.
+    const auto earlier = application.store.append_of_request(stored.id, candidates.request_id,
+                                                             candidates.request_hash, call.limits);
+    if (earlier == CandidatesAdded::Kind::kRequestIdTaken) return append_id_taken(request);
+    if (earlier) {
+      application.jobs.campaigns().ensure_queued(stored);
+      return to_message(application, stored);
+    }
+    if (auto refused = not_appendable(stored, request.name())) return *std::move(refused);
+    auto appended =
+        read_appended(stored, application.store.candidate_table(stored.id, call.limits), request,
+                      resource_lookup(application.store, call.project, call.limits),
+                      accepted_lookup(application.store, call.project,
+                                      {stored.lubricant_revision, stored.gear_set_revision,
+                                       stored.surface_revision, stored.vehicle_revision}),
+                      violations);
+    if (!appended) return invalid(violations);
+    candidates.campaign = stored.id;
+    candidates.candidates_before = stored.candidates;
+    candidates.candidates = appended->all.points.candidates;
+    candidates.candidate_table = appended->all.table.SerializeAsString();
+    candidates.input_hash = appended->all.input_hash;
+    candidates.cost_seconds = appended->cost_seconds;
+    candidates.candidate_lubricants = appended->candidate_lubricants;
+    if (request.validate_only()) return append_preview(application, stored, candidates);
+    if (auto full = project_full(application, call)) return *std::move(full);
+    if (application.jobs.is_stopping()) return shutting_down();
+    WorkPlace place;
+    if (auto refused = take_hours(application, candidates.cost_seconds, call, place)) {
+      return *std::move(refused);
+    }
+    const auto outcome = application.jobs.campaigns().append(
+        candidates, std::make_shared<CampaignInputs>(std::move(appended->all)), call.limits);
+    if (!outcome.has_place) return campaign_turned_away(application);
+    if (outcome.added.kind == CandidatesAdded::Kind::kRequestIdTaken) {
+      return append_id_taken(request);
+    }
+    if (outcome.added.kind == CandidatesAdded::Kind::kChanged) continue;
+    spdlog::info("event=candidates_added campaign={} request_id={} candidates={} call={}",
+                 name_of(stored), candidates.request_id,
+                 candidates.candidates - candidates.candidates_before, call.request_id);
+    return to_message(application, *outcome.added.stored);
+  }
+  return contention(kCampaignType, request.name());
 }
 
 Outcome<v1::Campaign> pause_campaign(Application& application,

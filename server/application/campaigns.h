@@ -16,6 +16,14 @@ Outcome<v1::Campaign> create_campaign(Application& application,
                                       const CallContext& call = {});
 Outcome<v1::Campaign> get_campaign(Application& application, const v1::GetCampaignRequest& request,
                                    const CallContext& call = {});
+/// Changes display name and labels.
+Outcome<v1::Campaign> update_campaign(Application& application,
+                                      const v1::UpdateCampaignRequest& request,
+                                      const CallContext& call = {});
+/// Adds candidates. When it returns, they are on disk.
+Outcome<v1::Campaign> append_candidates(Application& application,
+                                        const v1::AppendCandidatesRequest& request,
+                                        const CallContext& call = {});
 /// Returns a page of campaigns, the latest first.
 Outcome<v1::ListCampaignsResponse> list_campaigns(Application& application,
                                                   const v1::ListCampaignsRequest& request,

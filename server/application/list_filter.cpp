@@ -124,7 +124,7 @@ std::string full_key(const std::string& key, const std::string& collection) {
 /// Returns the collection of the resources that a field names; empty if its values are not names.
 std::string named_collection(const std::string& key, const std::string& collection) {
   if (key == "name" || key == "derived_from") return collection;
-  if (collection != kSimulations) return "";
+  if (collection != kSimulations && collection != kCampaigns) return "";
   if (key == "lubricant") return kLubricants;
   if (key == "gear_set") return kGearSets;
   if (key == "surface") return kSurfaces;
@@ -146,10 +146,7 @@ std::string unknown_field_text(const std::string& key, const std::string& collec
 
 std::optional<PropertyValue> number_value(const std::string& text) {
   double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
-    return std::nullopt;
-  }
+  if (!read_filter_number(text, value)) return std::nullopt;
   return value;
 }
 
@@ -178,54 +175,81 @@ std::vector<std::string> enum_names(const FieldDescriptor& field) {
   return names;
 }
 
-class FilterReader {
+/// Splits a filter into its conditions.
+class ConditionReader {
  public:
-  FilterReader(std::string_view text, const std::string& collection, Violations& violations)
-      : scanner_(text), collection_(collection), violations_(violations) {}
+  ConditionReader(std::string_view text, const std::string& example, Violations& violations)
+      : scanner_(text), example_(example), violations_(violations) {}
 
-  std::vector<Restriction> read() {
-    std::vector<Restriction> out;
-    while (!scanner_.at_end()) {
-      if (out.size() == kMaximumRestrictions) {
-        complain(fmt::format("more than {} restrictions", kMaximumRestrictions));
-        return out;
+  /// Calls `use` for each condition up to the first one that cannot be parsed.
+  template <class Use>
+  void read(const Use& use) {
+    for (std::size_t count = 0; !scanner_.at_end(); ++count) {
+      if (count == kMaximumRestrictions) {
+        return complain(fmt::format("more than {} restrictions", kMaximumRestrictions));
       }
-      std::optional<Restriction> next = restriction();
-      if (!next) return out;
-      out.push_back(std::move(*next));
-      if (scanner_.at_end()) return out;
+      const std::optional<FilterCondition> next = condition();
+      if (!next) return;
+      use(*next);
+      if (scanner_.at_end()) return;
       const std::string joint = scanner_.field().text;
       if (joint != "AND" || scanner_.at_end()) {
-        complain("restrictions are joined by AND, e.g. condition = USED AND labels.project = axle");
-        return out;
+        return complain("restrictions are joined by AND, e.g. " + example_);
       }
     }
-    return out;
   }
 
  private:
   void complain(std::string text) { violations_.push_back({"filter", std::move(text)}); }
 
   /// Returns nullopt, and adds a violation, if the rest of the filter cannot be parsed.
-  std::optional<Restriction> restriction() {
-    Restriction out;
-    out.key = scanner_.field().text;
+  std::optional<FilterCondition> condition() {
+    FilterCondition out;
+    out.field = scanner_.field().text;
     const std::string comparison = scanner_.comparison();
-    if (out.key.empty() || comparison.empty()) {
-      complain("allowed: field, one of = != < <= > >= :, value; e.g. condition = USED");
+    if (out.field.empty() || comparison.empty()) {
+      complain("allowed: field, one of = != < <= > >= :, value; e.g. " +
+               example_.substr(0, example_.find(" AND ")));
       return std::nullopt;
     }
     const std::optional<Token> value = scanner_.value();
     if (!value || (value->text.empty() && !value->quoted)) {
-      complain(
-          fmt::format("the value of {} is missing or its quotes are open", plain_excerpt(out.key)));
+      complain(fmt::format("the value of {} is missing or its quotes are open",
+                           plain_excerpt(out.field)));
       return std::nullopt;
     }
     out.comparison = comparison_of(comparison);
-    read_value(*value, out);
-    out.key = full_key(out.key, collection_);
+    out.value = value->text;
+    out.is_quoted = value->quoted;
     return out;
   }
+
+  Scanner scanner_;
+  const std::string& example_;
+  Violations& violations_;
+};
+
+class FilterReader {
+ public:
+  FilterReader(const std::string& collection, Violations& violations)
+      : collection_(collection), violations_(violations) {}
+
+  std::vector<Restriction> read(std::string_view text) {
+    static const std::string kExample = "condition = USED AND labels.project = axle";
+    std::vector<Restriction> out;
+    ConditionReader(text, kExample, violations_).read([&](const FilterCondition& condition) {
+      Restriction next;
+      next.key = condition.field;
+      next.comparison = condition.comparison;
+      read_value({condition.value, condition.is_quoted}, next);
+      next.key = full_key(next.key, collection_);
+      out.push_back(std::move(next));
+    });
+    return out;
+  }
+
+ private:
+  void complain(std::string text) { violations_.push_back({"filter", std::move(text)}); }
 
   void read_value(const Token& value, Restriction& out) {
     const auto kind = kind_of(out.key, collection_);
@@ -286,21 +310,38 @@ class FilterReader {
     out.value = name;
   }
 
-  Scanner scanner_;
   const std::string& collection_;
   Violations& violations_;
 };
 
+bool is_too_long(std::string_view filter, Violations& violations) {
+  if (filter.size() <= kMaximumFilterLength) return false;
+  violations.push_back({"filter", fmt::format("{} bytes; allowed: at most {}", filter.size(),
+                                              kMaximumFilterLength)});
+  return true;
+}
+
 }  // namespace
+
+bool read_filter_number(const std::string& text, double& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+}
+
+std::vector<FilterCondition> split_filter(std::string_view filter, const std::string& example,
+                                          Violations& violations) {
+  std::vector<FilterCondition> out;
+  if (is_too_long(filter, violations)) return out;
+  ConditionReader(filter, example, violations).read([&out](const FilterCondition& each) {
+    out.push_back(each);
+  });
+  return out;
+}
 
 std::vector<Restriction> parse_filter(std::string_view filter, const std::string& collection,
                                       Violations& violations) {
-  if (filter.size() > kMaximumFilterLength) {
-    violations.push_back({"filter", fmt::format("{} bytes; allowed: at most {}", filter.size(),
-                                                kMaximumFilterLength)});
-    return {};
-  }
-  return FilterReader(filter, collection, violations).read();
+  if (is_too_long(filter, violations)) return {};
+  return FilterReader(collection, violations).read(filter);
 }
 
 Order parse_order(std::string_view order_by, const std::string& collection,

@@ -19,6 +19,22 @@ namespace tribodyn::server {
 std::vector<Restriction> parse_filter(std::string_view filter, const std::string& collection,
                                       Violations& violations);
 
+/// A condition of a filter as it stands there.
+struct FilterCondition {
+  std::string field;
+  Restriction::Comparison comparison = Restriction::Comparison::kEqual;
+  std::string value;
+  bool is_quoted = false;
+};
+
+/// Splits a filter whose fields are not those of a collection. Adds a violation at "filter" if it
+/// has another form; `example`: a filter that the violation quotes.
+std::vector<FilterCondition> split_filter(std::string_view filter, const std::string& example,
+                                          Violations& violations);
+
+/// Returns true if the text is a finite number as in C, and sets `value`.
+bool read_filter_number(const std::string& text, double& value);
+
 struct Order {
   std::string key;  ///< empty: by name
   bool descending = false;

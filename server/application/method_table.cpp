@@ -195,6 +195,8 @@ std::vector<Method> rows() {
       unary(Scope::kWrite, kWrite, create_campaign),
       unary(Scope::kRead, kRead, get_campaign),
       unary(Scope::kRead, kSearch, list_campaigns),
+      unary(Scope::kWrite, kWrite, update_campaign),
+      unary(Scope::kWrite, kWrite, append_candidates),
       unary(Scope::kWrite, kWrite, pause_campaign),
       unary(Scope::kWrite, kWrite, resume_campaign),
       unary(Scope::kWrite, kWrite, cancel_campaign),

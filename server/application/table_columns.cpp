@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "server/simulation/campaign_candidates.h"
 #include "server/simulation/campaign_columns.h"
 #include "server/simulation/solver_defaults.h"
 
@@ -52,6 +53,7 @@ std::optional<TableColumn> TableColumns::find(const std::string& name) {
   std::vector<TableColumn> simple = figures();
   simple.push_back({"candidate", TableColumn::Kind::kCandidate});
   simple.push_back({"condition", TableColumn::Kind::kCondition});
+  simple.push_back({"row", TableColumn::Kind::kRow});
   for (TableColumn& each : condition_columns(request_)) simple.push_back(std::move(each));
   for (TableColumn& each : simple) {
     if (each.name == name) return std::move(each);
@@ -69,7 +71,7 @@ std::optional<TableColumn> TableColumns::find(const std::string& name) {
 
 std::vector<std::string> TableColumns::names() {
   std::vector<std::string> out = campaign_columns(request_);
-  out.insert(out.end(), {"candidate", "condition"});
+  out.insert(out.end(), {"candidate", "condition", "row"});
   for (const TableColumn& each : condition_columns(request_)) out.push_back(each.name);
   for (const v1::CandidateColumn& each : table().candidate_columns()) out.push_back(each.path());
   for (const v1::CandidateAttribute& each : table().candidate_attributes()) {
@@ -82,6 +84,7 @@ const v1::Campaign& TableColumns::table() {
   if (!table_) {
     table_.emplace();
     table_->ParseFromString(application_.store.candidate_table(stored_.id, call_.limits));
+    keep_first_candidates(stored_.candidates, *table_);  // others may have been added since it was read
   }
   return *table_;
 }

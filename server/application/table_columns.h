@@ -18,6 +18,7 @@ struct TableColumn {
     kStored,        ///< by number (campaign_columns.h)
     kCandidate,     ///< the number of the candidate
     kCondition,     ///< the number of the condition
+    kRow,           ///< the number of the row
     kPerCandidate,  ///< one value for each candidate
     kPerCondition,  ///< one value for each condition
   };

@@ -94,7 +94,8 @@ struct CampaignJobs::Part {
   std::function<bool()> goes_on;         ///< of the present slice
   std::function<double()> used_seconds;  ///< by the present slice, without other jobs
   std::optional<Tile> tile;
-  std::unique_ptr<CandidateScene> candidate;
+  std::shared_ptr<const CampaignInputs> inputs;  ///< with which the tile was taken
+  std::unique_ptr<CandidateScene> candidate;     ///< of these inputs
 };
 
 /// A campaign that is RUNNING, or whose last slices end.
@@ -113,12 +114,13 @@ struct CampaignJobs::Running {
   const std::int64_t id;
   const std::string name;
   const std::string principal;
-  const std::size_t bytes;  ///< of its request, when it began to run
-  const std::int64_t points;
-  const double cost_seconds;  ///< estimate of all points, of one processor
+  std::size_t bytes;  // of its request and candidates at least; guarded by CampaignJobs::mutex_
 
   std::mutex mutex;
-  std::int64_t points_done;                      // guarded by mutex, as all below
+  std::int64_t points;  // guarded by mutex, as all below
+  double cost_seconds;  // estimate of all points, of one processor
+  std::int64_t points_done;
+  std::int64_t candidates = 0;                   // those that are missing or in tiles
   bool is_halted = false;                        // no further row is to be computed
   std::shared_ptr<const CampaignInputs> inputs;  // null before the first slice
   std::deque<RowRange> missing;                  // candidates that no part has taken
@@ -170,9 +172,8 @@ void CampaignJobs::activate(const StoredCampaign& campaign) {
     RunningPointer& entry = running_[campaign.id];
     if (!entry) entry = std::make_shared<Running>(campaign, threads_);
     running = entry;
-  }
-  {
-    const std::lock_guard lock(running->mutex);
+    // Before the entry can be seen: who finds it halted and idle removes it.
+    const std::lock_guard inner(running->mutex);
     running->is_halted = false;
   }
   start_parts(*running);
@@ -259,26 +260,75 @@ double CampaignJobs::unfinished_seconds(const std::string& principal) const {
   return out;
 }
 
-CampaignJobs::Admitted CampaignJobs::submit(const NewCampaign& campaign, const CallLimits& limits) {
-  std::size_t count = 0, all_bytes = 0, own_bytes = 0;
-  {
-    const std::lock_guard lock(mutex_);
-    for (const auto& [id, running] : running_) {
-      ++count;
-      all_bytes += running->bytes;
-      if (running->principal == campaign.principal) own_bytes += running->bytes;
-    }
+/// Returns true if a campaign of this size may run beside all but the campaign `own`.
+bool CampaignJobs::has_place(const std::string& principal, std::int64_t own,
+                             std::size_t bytes) const {
+  std::size_t count = 0, all_bytes = bytes, own_bytes = bytes;
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, running] : running_) {
+    if (id == own) continue;
+    ++count;
+    all_bytes += running->bytes;
+    if (running->principal == principal) own_bytes += running->bytes;
   }
-  const std::size_t bytes = campaign.request.size() + campaign.candidate_table.size();
+  return count < kMostRunning && all_bytes <= kMostRunningBytes &&
+         static_cast<double>(own_bytes) <=
+             kShareOfPrincipal * static_cast<double>(kMostRunningBytes);
+}
+
+CampaignJobs::Admitted CampaignJobs::submit(const NewCampaign& campaign, const CallLimits& limits) {
   Admitted out;
-  out.has_place = count < kMostRunning && all_bytes + bytes <= kMostRunningBytes &&
-                  static_cast<double>(own_bytes + bytes) <=
-                      kShareOfPrincipal * static_cast<double>(kMostRunningBytes);
+  out.has_place =
+      has_place(campaign.principal, 0, campaign.request.size() + campaign.candidate_table.size());
   if (!out.has_place) return out;
   const std::lock_guard control(control_mutex_);
   out.added = store_.add_campaign(campaign, clock_(), limits);
   if (out.added.kind == CampaignAdded::Kind::kAdded) activate(out.added.stored);
   return out;
+}
+
+CampaignJobs::Appended CampaignJobs::append(const NewCandidates& candidates,
+                                            std::shared_ptr<CampaignInputs> inputs,
+                                            const CallLimits& limits) {
+  Appended out;
+  const std::lock_guard control(control_mutex_);
+  const auto before = store_.campaign(candidates.campaign, limits);
+  const RunningPointer running = find(candidates.campaign);
+  out.has_place = !before || has_place(before->principal, before->id,
+                                       static_cast<std::size_t>(before->stored_bytes) +
+                                           candidates.candidate_table.size());
+  if (!out.has_place) return out;
+  const bool is_loaded = [&] {
+    if (!running) return false;
+    const std::lock_guard lock(running->mutex);
+    return running->inputs != nullptr;
+  }();
+  // Of a campaign that this process has begun the attempt counts already.
+  out.added = store_.add_candidates(candidates, clock_(), is_loaded ? 1 : 0, limits);
+  if (out.added.kind != CandidatesAdded::Kind::kAdded) return out;
+  inputs->table.Clear();  // the columns are in `points`
+  if (running) extend(*running, *out.added.stored, inputs);
+  if (out.added.stored->state == CampaignState::kRunning) activate(*out.added.stored);
+  return out;
+}
+
+/// Makes the candidates that were added missing ones. A campaign that is not loaded will find them
+/// in the store.
+void CampaignJobs::extend(Running& running, const StoredCampaign& campaign,
+                          const std::shared_ptr<const CampaignInputs>& inputs) {
+  {
+    const std::lock_guard lock(mutex_);
+    running.bytes = std::max(running.bytes, static_cast<std::size_t>(campaign.stored_bytes));
+  }
+  const std::lock_guard lock(running.mutex);
+  running.points = campaign.points();
+  running.cost_seconds = campaign.cost_seconds;
+  if (!running.inputs) return;
+  if (running.candidates < campaign.candidates) {
+    running.missing.push_back({running.candidates, campaign.candidates - running.candidates});
+    running.candidates = campaign.candidates;
+  }
+  running.inputs = inputs;
 }
 
 void CampaignJobs::ensure_queued(const StoredCampaign& campaign) {
@@ -370,6 +420,7 @@ void CampaignJobs::load(Running& running) {
   std::sort(taken.begin(), taken.end(),
             [](const RowRange& one, const RowRange& other) { return one.first < other.first; });
   running.missing = missing_candidates(taken, stored->candidates, stored->conditions);
+  running.candidates = stored->candidates;
   running.is_careful = stored->lost_attempts >= kCarefulAttempts || !running.suspects.empty();
   inputs->table.Clear();  // the columns are in `points`
   running.inputs = std::move(inputs);
@@ -425,22 +476,17 @@ void CampaignJobs::run_slice(const Lease& lease, PreparedGearSets& gear_sets,
 /// Computes for about Scheduler::kSliceSeconds. Returns true if there may be more to do. Throws
 /// Refusal or StoreError; then the tile stays as it is.
 bool CampaignJobs::compute_slice(Running& running, Part& part, PreparedGearSets& gear_sets) {
-  std::shared_ptr<const CampaignInputs> inputs;
   {
     const std::lock_guard lock(running.mutex);
     if (!running.inputs && !running.is_halted) load(running);
-    inputs = running.inputs;
+    if (!running.inputs) return false;
+    if (!part.inputs) use_inputs(part, running.inputs);
   }
-  if (!inputs) return false;
-  if (!part.candidate) {
-    part.candidate =
-        std::make_unique<CandidateScene>(inputs->points, [&part] { return part.goes_on(); });
-  }
-  const Scene& scene = part.candidate->scene();
   std::shared_ptr<PreparedGearSet> gear_set;
   const auto give_back = [&] {
     if (!gear_set) return;
-    gear_sets.give_back(inputs->points.base.gear_set, scene.options, std::move(gear_set));
+    gear_sets.give_back(part.inputs->points.base.gear_set, part.candidate->scene().options,
+                        std::move(gear_set));
   };
   for (;;) {
     const bool is_halted = [&] {
@@ -450,7 +496,9 @@ bool CampaignJobs::compute_slice(Running& running, Part& part, PreparedGearSets&
     if (part.tile && (part.tile->is_full() || is_halted || !part.goes_on())) write(running, part);
     if (is_halted || !part.goes_on()) break;
     if (!part.tile && !take_tile(running, part)) break;
-    if (!gear_set) gear_set = gear_sets.take(inputs->points.base.gear_set, scene);
+    if (!gear_set) {
+      gear_set = gear_sets.take(part.inputs->points.base.gear_set, part.candidate->scene());
+    }
     try {
       compute_unit(running, part, gear_set);
     } catch (const Cancelled&) {
@@ -465,6 +513,15 @@ bool CampaignJobs::compute_slice(Running& running, Part& part, PreparedGearSets&
   }
   give_back();
   return false;
+}
+
+/// Makes the part compute candidates of these inputs. Its gear set is the same one: candidates
+/// that are added differ in fluid and surface.
+void CampaignJobs::use_inputs(Part& part, const std::shared_ptr<const CampaignInputs>& inputs) {
+  part.candidate.reset();  // it refers to the inputs before
+  part.inputs = inputs;
+  part.candidate =
+      std::make_unique<CandidateScene>(inputs->points, [&part] { return part.goes_on(); });
 }
 
 /// Takes the next candidates for a tile. Returns false if the part finds none. Throws StoreError;
@@ -482,10 +539,11 @@ bool CampaignJobs::take_tile(Running& running, Part& part) {
     }
     const auto candidates = next_candidates(running);
     if (!candidates) return false;
+    if (part.inputs != running.inputs) use_inputs(part, running.inputs);
     Tile& tile = part.tile.emplace(*candidates);
-    const auto conditions = static_cast<std::size_t>(running.inputs->points.conditions);
+    const auto conditions = static_cast<std::size_t>(part.inputs->points.conditions);
     tile.points.resize(conditions);
-    tile.columns.resize(running.inputs->columns);
+    tile.columns.resize(part.inputs->columns);
     for (auto& each : tile.columns) {
       each.reserve(static_cast<std::size_t>(tile.candidates.count) * conditions);
     }
@@ -493,7 +551,7 @@ bool CampaignJobs::take_tile(Running& running, Part& part) {
   }
   if (!is_careful || part.tile->lost_attempts >= kMaximumLostAttempts) return true;
   try {
-    const std::int64_t conditions = running.inputs->points.conditions;
+    const std::int64_t conditions = part.inputs->points.conditions;
     store_.begin_suspect(running.id, {part.tile->candidates.first * conditions,
                                       part.tile->candidates.count * conditions});
     part.tile->is_noted = true;
@@ -548,7 +606,7 @@ void CampaignJobs::return_rows(Running& running, const Tile& tile) {
 void CampaignJobs::compute_unit(Running& running, Part& part,
                                 const std::shared_ptr<PreparedGearSet>& gear_set) {
   Tile& tile = *part.tile;
-  const PointEvaluation& points = running.inputs->points;
+  const PointEvaluation& points = part.inputs->points;
   const double before = part.used_seconds();
   if (tile.lost_attempts >= kMaximumLostAttempts) {
     std::fill(tile.points.begin(), tile.points.end(), lost_point());
@@ -562,17 +620,18 @@ void CampaignJobs::compute_unit(Running& running, Part& part,
   }
   if (tile.group == points.groups.size()) {
     tile.group = 0;
-    add_rows(running, tile);
+    add_rows(running, part);
     ++tile.done;
   }
   tile.seconds += part.used_seconds() - before;
 }
 
 /// Adds the rows of the present candidate to the columns.
-void CampaignJobs::add_rows(Running& running, Tile& tile) {
+void CampaignJobs::add_rows(Running& running, Part& part) {
+  Tile& tile = *part.tile;
   for (const EvaluatedPoint& point : tile.points) {
     const int refusal = refusal_number(running, point, tile);
-    add_campaign_row(running.inputs->points, point, refusal, tile.columns);
+    add_campaign_row(part.inputs->points, point, refusal, tile.columns);
   }
 }
 
@@ -593,7 +652,7 @@ int CampaignJobs::refusal_number(Running& running, const EvaluatedPoint& point, 
 /// then changes nothing.
 void CampaignJobs::write(Running& running, Part& part) {
   Tile& tile = *part.tile;
-  const std::int64_t conditions = running.inputs->points.conditions;
+  const std::int64_t conditions = part.inputs->points.conditions;
   std::optional<StoredCampaign> stored;
   if (tile.done > 0) {
     NewTile rows;

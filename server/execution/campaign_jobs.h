@@ -49,6 +49,14 @@ class CampaignJobs {
   /// although its writer sees an error.
   void ensure_queued(const StoredCampaign& campaign);
 
+  struct Appended {
+    CandidatesAdded added;
+    bool has_place = true;  ///< as in Admitted
+  };
+  /// Adds candidates and queues the campaign if it is RUNNING then. `inputs`: of all candidates.
+  Appended append(const NewCandidates& candidates, std::shared_ptr<CampaignInputs> inputs,
+                  const CallLimits& limits = {});
+
   // These functions return the campaign as it is then; nullopt if it does not exist. They change
   // nothing if it has ended.
   std::optional<StoredCampaign> pause(std::int64_t id, const CallLimits& limits = {});
@@ -72,6 +80,9 @@ class CampaignJobs {
   using RunningPointer = std::shared_ptr<Running>;
 
   RunningPointer find(std::int64_t id);
+  bool has_place(const std::string& principal, std::int64_t own, std::size_t bytes) const;
+  void extend(Running& running, const StoredCampaign& campaign,
+              const std::shared_ptr<const CampaignInputs>& inputs);
   void activate(const StoredCampaign& campaign);
   void halt(std::int64_t id);
   void settle(std::int64_t id);
@@ -81,12 +92,13 @@ class CampaignJobs {
   void end_care(const Running& running);
   void forget_if_idle(std::int64_t id);
   void load(Running& running);
+  static void use_inputs(Part& part, const std::shared_ptr<const CampaignInputs>& inputs);
   bool take_tile(Running& running, Part& part);
   std::optional<Tile> next_candidates(Running& running) const;
   void return_rows(Running& running, const Tile& tile);
   bool compute_slice(Running& running, Part& part, PreparedGearSets& gear_sets);
   void compute_unit(Running& running, Part& part, const std::shared_ptr<PreparedGearSet>& gear_set);
-  void add_rows(Running& running, Tile& tile);
+  void add_rows(Running& running, Part& part);
   int refusal_number(Running& running, const EvaluatedPoint& point, Tile& tile);
   void write(Running& running, Part& part);
   void fail(std::int64_t id, const std::string& reason, const std::string& message);

@@ -9,6 +9,7 @@
 #include "core/refusal.h"
 #include "server/contract/check_message.h"
 #include "server/contract/constraints.h"
+#include "server/contract/labels.h"
 #include "server/contract/output_only.h"
 #include "server/simulation/campaign_columns.h"
 #include "server/simulation/cost_estimate.h"
@@ -29,6 +30,7 @@ v1::Campaign take_table(v1::Campaign& campaign) {
   v1::Campaign out;
   out.mutable_candidate_columns()->Swap(campaign.mutable_candidate_columns());
   out.mutable_candidate_attributes()->Swap(campaign.mutable_candidate_attributes());
+  out.mutable_candidate_lubricants()->Swap(campaign.mutable_candidate_lubricants());
   return out;
 }
 
@@ -58,7 +60,7 @@ bool is_column_name(std::string_view name) {
 
 /// Names that an attribute may not have, as other columns have them.
 std::set<std::string, std::less<>> taken_names(const v1::Campaign& requested) {
-  std::set<std::string, std::less<>> out{"candidate", "condition"};
+  std::set<std::string, std::less<>> out{"candidate", "condition", "row"};
   for (std::string& each : campaign_columns(requested)) out.insert(std::move(each));
   for (std::string& each : candidate_parameter_names()) out.insert(std::move(each));
   const auto& condition = *v1::PointCondition::descriptor();
@@ -109,7 +111,16 @@ void check_rest(const v1::Campaign& requested, const v1::Campaign& table, Violat
   *rest.mutable_condition_weights() = requested.condition_weights();
   if (requested.has_budget()) *rest.mutable_budget() = requested.budget();
   *rest.mutable_candidate_attributes() = table.candidate_attributes();
+  *rest.mutable_candidate_lubricants() = table.candidate_lubricants();
+  rest.set_lubricant_filter(requested.lubricant_filter());
   check_message(rest, "", violations);
+  if (requested.labels_size() > kMaximumSimulationLabels) {
+    violations.push_back(
+        {"labels", fmt::format("{} labels; allowed: at most {}", requested.labels_size(),
+                               kMaximumSimulationLabels)});
+  } else {
+    check_labels(requested.labels(), "labels", violations);
+  }
 }
 
 /// Divides groups of more conditions than a unit of work has.
@@ -159,7 +170,166 @@ std::string hash_of(const PointEvaluation& points) {
   return hash.finish();
 }
 
-/// As read_campaign(), without input_hash.
+[[noreturn]] void unreadable_request() {
+  throw Refusal("STORED_REQUEST_UNREADABLE", "the stored request cannot be read");
+}
+
+/// Returns a stored campaign with a table of candidates, which may be empty, and with the revisions
+/// of its resources.
+v1::Campaign stored_request(const StoredCampaign& stored, const std::string& table) {
+  v1::Campaign out;
+  // Fields of the second message join those of the first.
+  if (!out.ParseFromString(stored.request) || !out.MergeFromString(table)) unreadable_request();
+  keep_first_candidates(stored.candidates, out);  // others may have been added since it was read
+  // An older server may have accepted it with other defaults.
+  out.set_lubricant(stored.lubricant_revision);
+  out.set_gear_set(stored.gear_set_revision);
+  out.set_surface(stored.surface_revision);
+  out.set_vehicle(stored.vehicle_revision);
+  return out;
+}
+
+/// Returns the candidates of a request for further ones: as columns, attributes and lubricants.
+v1::Campaign further_candidates(const v1::Campaign& campaign, const v1::Campaign& present,
+                                const v1::AppendCandidatesRequest& request,
+                                const ResourceLookup& lookup, const ResourceLookup& accepted,
+                                Violations& violations) {
+  v1::Campaign out;
+  if (present.candidate_columns().empty()) {
+    violations.push_back({"name",
+                          "the campaign has one candidate, the base, and no columns that "
+                          "further candidates could have; create another one"});
+    return out;
+  }
+  const bool is_of_lubricants = !present.candidate_lubricants().empty();
+  if (is_of_lubricants == request.candidate_lubricants().empty()) {
+    violations.push_back(
+        {is_of_lubricants ? "candidate_lubricants" : "candidate_lubricants[0]",
+         is_of_lubricants
+             ? "not set; allowed: lubricants, which the candidates of this campaign are"
+             : "set; allowed: candidate_columns, which state the candidates of this campaign"});
+  }
+  if (is_of_lubricants && !request.candidate_columns().empty()) {
+    violations.push_back({"candidate_columns",
+                          "set; allowed: candidate_lubricants, as the candidates of this campaign "
+                          "are lubricants"});
+  }
+  if (!is_of_lubricants && request.candidate_columns().empty()) {
+    violations.push_back({"candidate_columns", "not set; allowed: those of the campaign"});
+  }
+  if (!violations.empty()) return out;
+  if (is_of_lubricants) {
+    const auto base = find_resource<v1::Lubricant>(accepted, campaign.lubricant(), kLubricants,
+                                                   "name", violations);
+    if (!base) return out;
+    out = lubricant_candidates(request.candidate_lubricants(), *base->resource, lookup, violations);
+    const auto& known = present.candidate_lubricants();
+    for (int i = 0; i < out.candidate_lubricants_size(); ++i) {
+      const std::string& name = out.candidate_lubricants(i);
+      if (std::find(known.begin(), known.end(), name) == known.end()) continue;
+      violations.push_back({fmt::format("candidate_lubricants[{}]", i),
+                            name + " is a candidate already; allowed: others"});
+    }
+    if (known.size() + out.candidate_lubricants_size() > kMaximumCandidateLubricants) {
+      violations.push_back({"candidate_lubricants",
+                            fmt::format("{} beside the {} that it has; allowed: at most {} in one "
+                                        "campaign",
+                                        out.candidate_lubricants_size(), known.size(),
+                                        kMaximumCandidateLubricants)});
+    }
+  }
+  out.mutable_candidate_columns()->MergeFrom(request.candidate_columns());
+  out.mutable_candidate_attributes()->MergeFrom(request.candidate_attributes());
+  return out;
+}
+
+/// Returns the element with this name, or path; null if there is none.
+template <class Elements>
+auto* find_entry(Elements& elements, const std::string& name) {
+  const auto name_of = [](const auto& each) -> const std::string& {
+    if constexpr (requires { each.path(); }) {
+      return each.path();
+    } else {
+      return each.name();
+    }
+  };
+  const auto found = std::find_if(elements.begin(), elements.end(),
+                                  [&](const auto& each) { return name_of(each) == name; });
+  return found == elements.end() ? nullptr : &*found;
+}
+
+/// Adds a violation for each column and attribute that only one of the two tables has.
+void check_same_columns(const v1::Campaign& present, const v1::Campaign& further,
+                        Violations& violations) {
+  const auto is_optional = [&present](const std::string& name) {
+    return !present.candidate_lubricants().empty() && is_made_attribute(name);
+  };
+  const auto kind = [](const v1::CandidateAttribute& each) {
+    return each.texts().empty() ? "values" : "texts";
+  };
+  for (const v1::CandidateColumn& each : present.candidate_columns()) {
+    if (find_entry(further.candidate_columns(), each.path()) != nullptr) continue;
+    violations.push_back({"candidate_columns", "lacks the column \"" + each.path() +
+                                                   "\" of the campaign; allowed: all of them"});
+  }
+  for (int i = 0; i < further.candidate_columns_size(); ++i) {
+    const std::string& path = further.candidate_columns(i).path();
+    if (find_entry(present.candidate_columns(), path) != nullptr) continue;
+    std::vector<std::string> known;
+    for (const auto& each : present.candidate_columns()) known.push_back(each.path());
+    violations.push_back({fmt::format("candidate_columns[{}].path", i),
+                          fmt::format("\"{}\" is no column of the campaign{}", plain_excerpt(path),
+                                      meant_text(path, known))});
+  }
+  for (const v1::CandidateAttribute& each : present.candidate_attributes()) {
+    const auto* other = find_entry(further.candidate_attributes(), each.name());
+    if (is_optional(each.name()) || (other != nullptr && kind(*other) == kind(each))) continue;
+    violations.push_back(
+        {"candidate_attributes", fmt::format("lacks \"{}\" with {}; allowed: all attributes of the "
+                                             "campaign",
+                                             each.name(), kind(each))});
+  }
+  for (int i = 0; i < further.candidate_attributes_size(); ++i) {
+    const std::string& name = further.candidate_attributes(i).name();
+    if (is_optional(name) || find_entry(present.candidate_attributes(), name) != nullptr) continue;
+    std::vector<std::string> known;
+    for (const auto& each : present.candidate_attributes()) known.push_back(each.name());
+    violations.push_back(
+        {fmt::format("candidate_attributes[{}].name", i),
+         fmt::format("\"{}\" is no attribute of the campaign{}", plain_excerpt(name),
+                     known.empty() ? ", which has none" : meant_text(name, known))});
+  }
+}
+
+/// Returns the candidates of both tables, which have the same columns. An uncertainty that only one
+/// of them has is 0 in the other.
+v1::Campaign joined_candidates(v1::Campaign present, v1::Campaign further) {
+  const int before = present.candidate_columns(0).values_size();
+  const int more = further.candidate_columns(0).values_size();
+  for (v1::CandidateColumn& each : *present.mutable_candidate_columns()) {
+    each.mutable_values()->MergeFrom(
+        find_entry(further.candidate_columns(), each.path())->values());
+  }
+  for (v1::CandidateAttribute& each : *present.mutable_candidate_attributes()) {
+    if (const auto* other = find_entry(further.candidate_attributes(), each.name())) {
+      each.mutable_texts()->MergeFrom(other->texts());
+      each.mutable_values()->MergeFrom(other->values());
+    } else {
+      each.mutable_values()->Resize(before + more, 0);
+    }
+  }
+  for (v1::CandidateAttribute& each : *further.mutable_candidate_attributes()) {
+    if (find_entry(present.candidate_attributes(), each.name()) != nullptr) continue;
+    v1::CandidateAttribute& added = *present.add_candidate_attributes();
+    added.set_name(each.name());
+    added.mutable_values()->Resize(before, 0);
+    added.mutable_values()->MergeFrom(each.values());
+  }
+  present.mutable_candidate_lubricants()->MergeFrom(further.candidate_lubricants());
+  return present;
+}
+
+/// As read_campaign(), without input_hash, of a request whose candidates are columns.
 std::optional<CampaignInputs> check_campaign(v1::Campaign request, const ResourceLookup& lookup,
                                              const std::string& path, Violations& violations) {
   Violations found;
@@ -187,26 +357,73 @@ std::optional<CampaignInputs> check_campaign(v1::Campaign request, const Resourc
 }  // namespace
 
 std::optional<CampaignInputs> read_campaign(v1::Campaign request, const ResourceLookup& lookup,
-                                            const std::string& path, Violations& violations) {
-  auto out = check_campaign(std::move(request), lookup, path, violations);
+                                            const std::string& path, Violations& violations,
+                                            const LubricantSearch& search) {
+  keep_client_part(request);
+  sort_labels(*request.mutable_labels());
+  Violations found, rest;
+  make_candidates(request, lookup, search, found);
+  // Without candidates the rest is checked all the same: all violations are told at once.
+  if (!found.empty()) request.clear_candidate_attributes();  // there is nothing that they go with
+  auto out = check_campaign(std::move(request), lookup, path, rest);
+  std::set<std::string> fields;
+  for (Violation& each : found) {
+    fields.insert(join_path(path, each.field));
+    violations.push_back({join_path(path, each.field), std::move(each.description)});
+  }
+  for (Violation& each : rest) {
+    if (!fields.contains(each.field)) violations.push_back(std::move(each));
+  }
+  if (!found.empty()) return std::nullopt;
   if (out) out->input_hash = hash_of(out->points);
+  return out;
+}
+
+std::optional<AppendedCandidates> read_appended(const StoredCampaign& stored,
+                                                const std::string& table,
+                                                const v1::AppendCandidatesRequest& request,
+                                                const ResourceLookup& lookup,
+                                                const ResourceLookup& accepted,
+                                                Violations& violations) {
+  const std::size_t before = violations.size();
+  const v1::Campaign campaign = stored_request(stored, {});
+  v1::Campaign present;
+  if (!present.ParseFromString(table)) unreadable_request();
+  keep_first_candidates(stored.candidates, present);
+  v1::Campaign further =
+      further_candidates(campaign, present, request, lookup, accepted, violations);
+  if (violations.size() > before) return std::nullopt;
+  check_same_columns(present, further, violations);
+  const auto count = [](const v1::Campaign& each) {
+    return each.candidate_columns().empty() ? 0 : each.candidate_columns(0).values_size();
+  };
+  if (count(present) + count(further) > kMaximumCandidates) {
+    violations.push_back({"candidate_columns",
+                          fmt::format("{} candidates beside the {} that it has; allowed: at most "
+                                      "{} in one campaign; make another one",
+                                      count(further), count(present), kMaximumCandidates)});
+  }
+  v1::Campaign part = campaign;
+  part.MergeFrom(further);
+  const auto own = check_campaign(std::move(part), accepted, "", violations);
+  if (!own || violations.size() > before) return std::nullopt;
+  AppendedCandidates out;
+  out.cost_seconds = estimate_cost(*own).processor_seconds();
+  out.candidate_lubricants = {further.candidate_lubricants().begin(),
+                              further.candidate_lubricants().end()};
+  v1::Campaign whole = campaign;
+  whole.MergeFrom(joined_candidates(std::move(present), std::move(further)));
+  auto all = check_campaign(std::move(whole), accepted, "", violations);
+  if (!all) return std::nullopt;
+  out.all = std::move(*all);
+  out.all.input_hash = hash_of(out.all.points);
   return out;
 }
 
 CampaignInputs stored_campaign_inputs(const StoredCampaign& stored, const std::string& table,
                                       const ResourceLookup& lookup) {
-  v1::Campaign request;
-  // Fields of the second message join those of the first.
-  if (!request.ParseFromString(stored.request) || !request.MergeFromString(table)) {
-    throw Refusal("STORED_REQUEST_UNREADABLE", "the stored request cannot be read");
-  }
-  // An older server may have accepted it with other defaults.
-  request.set_lubricant(stored.lubricant_revision);
-  request.set_gear_set(stored.gear_set_revision);
-  request.set_surface(stored.surface_revision);
-  request.set_vehicle(stored.vehicle_revision);
   Violations violations;
-  auto inputs = check_campaign(std::move(request), lookup, "campaign", violations);
+  auto inputs = check_campaign(stored_request(stored, table), lookup, "campaign", violations);
   if (!inputs) {
     throw Refusal("STORED_REQUEST_INVALID",
                   violations.front().field + ": " + violations.front().description);

@@ -18,11 +18,6 @@ namespace {
 
 using google::protobuf::FieldDescriptor;
 
-/// Returns true if the parameter errs together with others: by a fit to the same measurements.
-bool is_of_a_law(const FieldDescriptor& field) {
-  return field.name().starts_with("vogel_") || field.name().starts_with("density_");
-}
-
 /// Returns the message of the base that holds a parameter; null if it has none, or follows another
 /// pressure-viscosity law.
 const google::protobuf::Message* holder_of(const FieldDescriptor& field,
@@ -34,26 +29,6 @@ const google::protobuf::Message* holder_of(const FieldDescriptor& field,
     return is_of_roelands && lubricant.has_improved_yasutomi() ? nullptr : &lubricant;
   }
   return lubricant.has_improved_yasutomi() ? &lubricant.improved_yasutomi() : nullptr;
-}
-
-/// Returns the value of the base; nullopt if it has none.
-std::optional<double> base_value(const FieldDescriptor& field, const SimulationInputs& base) {
-  const google::protobuf::Message* holder = holder_of(field, base);
-  if (holder == nullptr) return std::nullopt;
-  const auto& reflection = *holder->GetReflection();
-  if (field.has_presence() && !reflection.HasField(*holder, &field)) return std::nullopt;
-  return reflection.GetDouble(*holder, &field);
-}
-
-/// Returns the standard uncertainty that the base states of a parameter; 0: none.
-double stated_by_base(const std::string& path, const FieldDescriptor& field,
-                      const SimulationInputs& base) {
-  if (is_of_a_law(field)) return 0;
-  const auto& entries = field.containing_type() == v1::Surface::descriptor()
-                            ? base.surface->provenance()
-                            : base.lubricant->provenance();
-  const v1::ParameterProvenance* entry = find_provenance(entries, path.substr(path.find('.') + 1));
-  return entry == nullptr ? 0 : entry->standard_uncertainty();
 }
 
 const v1::ParameterUncertainty* find_stated(const v1::RankCandidatesRequest& request,
@@ -93,6 +68,28 @@ void keep_column(int column, PointEvaluation& points) {
 }
 
 }  // namespace
+
+bool errs_with_a_law(const FieldDescriptor& field) {
+  return field.name().starts_with("vogel_") || field.name().starts_with("density_");
+}
+
+std::optional<double> base_value(const FieldDescriptor& field, const SimulationInputs& base) {
+  const google::protobuf::Message* holder = holder_of(field, base);
+  if (holder == nullptr) return std::nullopt;
+  const auto& reflection = *holder->GetReflection();
+  if (field.has_presence() && !reflection.HasField(*holder, &field)) return std::nullopt;
+  return reflection.GetDouble(*holder, &field);
+}
+
+double stated_by_base(const std::string& path, const FieldDescriptor& field,
+                      const SimulationInputs& base) {
+  if (errs_with_a_law(field)) return 0;
+  const auto& entries = field.containing_type() == v1::Surface::descriptor()
+                            ? base.surface->provenance()
+                            : base.lubricant->provenance();
+  const v1::ParameterProvenance* entry = find_provenance(entries, path.substr(path.find('.') + 1));
+  return entry == nullptr ? 0 : entry->standard_uncertainty();
+}
 
 void check_uncertainties(const v1::RankCandidatesRequest& request, Violations& violations) {
   std::set<std::string> paths;

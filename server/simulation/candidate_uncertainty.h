@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,19 @@
 #include "server/simulation/prepared_gear_sets.h"
 
 namespace tribodyn::server {
+
+/// Returns true if the parameter errs together with others: by a fit to the same measurements.
+bool errs_with_a_law(const google::protobuf::FieldDescriptor& field);
+
+// Of a base only lubricant and surface are used.
+
+/// Returns the value of the base; nullopt if it has none.
+std::optional<double> base_value(const google::protobuf::FieldDescriptor& field,
+                                 const SimulationInputs& base);
+/// Returns the standard uncertainty that the base states of a parameter, path as in
+/// CandidateColumn; 0: none, or the parameter errs with a law.
+double stated_by_base(const std::string& path, const google::protobuf::FieldDescriptor& field,
+                      const SimulationInputs& base);
 
 /// Checks the names and values of stated uncertainties.
 void check_uncertainties(const v1::RankCandidatesRequest& request, Violations& violations);

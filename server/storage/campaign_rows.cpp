@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <stdexcept>
 
+#include "server/storage/campaign_conditions.h"
 #include "server/storage/checksum.h"
 #include "server/storage/history/column_codec.h"
 #include "server/storage/life_cycle.h"
@@ -194,6 +195,37 @@ void insert_blobs(Connection& db, std::int64_t id, const NewTile& tile,
   }
 }
 
+/// Binds the relative name of a revision as full name and number.
+void bind_revision(Prepared& statement, int at, const std::string& project,
+                   const std::string& revision) {
+  const std::size_t end = revision.find('@');
+  statement.bind(at, full_name(project, revision.substr(0, end)));
+  statement.bind(at + 1, std::stoi(revision.substr(end + 1)));
+}
+
+void insert_campaign_labels(Connection& db, std::int64_t id, const CampaignLabels& labels) {
+  for (const auto& [key, value] : labels) {
+    Prepared label(db, "INSERT INTO campaign_labels VALUES (?, ?, ?)");
+    label.bind(1, key);
+    label.bind(2, value);
+    label.bind(3, id);
+    label.exec();
+  }
+}
+
+void insert_lubricants(Connection& db, std::int64_t id, const std::string& project,
+                       const std::vector<std::string>& revisions) {
+  Prepared insert(db,
+                  "INSERT INTO campaign_lubricants VALUES (?, (SELECT revision_id FROM "
+                  "revision_names WHERE name = ? AND revision = ?)) ON CONFLICT DO NOTHING");
+  for (const std::string& each : revisions) {
+    insert.bind(1, id);
+    bind_revision(insert, 2, project, each);
+    insert.exec();
+    insert.reset();
+  }
+}
+
 }  // namespace
 
 CampaignAdded insert_campaign(Connection& db, const NewCampaign& campaign, Microseconds now) {
@@ -239,12 +271,14 @@ CampaignAdded insert_campaign(Connection& db, const NewCampaign& campaign, Micro
   bind_blob(insert, ++at, campaign.candidate_table);
   for (const std::string* revision : {&campaign.lubricant_revision, &campaign.gear_set_revision,
                                       &campaign.surface_revision, &campaign.vehicle_revision}) {
-    const std::size_t end = revision->find('@');
-    bind(full_name(campaign.project, revision->substr(0, end)));
-    bind(std::stoi(revision->substr(end + 1)));
+    bind_revision(insert, at + 1, campaign.project, *revision);
+    at += 2;
   }
   insert.exec();
-  return {CampaignAdded::Kind::kAdded, *query_campaign(db, db.getLastInsertRowid())};
+  const std::int64_t id = db.getLastInsertRowid();
+  insert_campaign_labels(db, id, campaign.labels);
+  insert_lubricants(db, id, campaign.project, campaign.candidate_lubricants);
+  return {CampaignAdded::Kind::kAdded, *query_campaign(db, id)};
 }
 
 std::optional<StoredCampaign> query_campaign(Connection& db, std::int64_t id) {
@@ -272,23 +306,102 @@ std::optional<StoredCampaign> query_campaign_of_request(Connection& db, const st
   return stored_campaign(query);
 }
 
-Page<StoredCampaign> query_campaigns(Connection& db, const std::string& project,
-                                     std::int64_t before, int limit) {
-  Prepared query(db, std::string(kSelectCampaigns) +
-                         "WHERE project = ?1 AND (?2 = 0 OR number < ?2) "
-                         "ORDER BY number DESC LIMIT ?3");
-  query.bind(1, project);
-  query.bind(2, before);
-  query.bind(3, limit + 1);
+Page<StoredCampaign> query_campaigns(Connection& db, const CampaignQuery& wanted) {
+  const Condition all = campaign_condition(db, wanted.project, wanted.restrictions);
+  const auto bind_all = [&all](auto& statement) {
+    int at = 0;
+    for (const PropertyValue& value : all.values) bind_value(statement, ++at, value);
+    return at;
+  };
+  SQLite::Statement query(db, std::string(kSelectCampaigns) + "WHERE " + all.sql +
+                                  " AND (? = 0 OR number < ?) ORDER BY number DESC LIMIT ?");
+  int at = bind_all(query);
+  query.bind(++at, wanted.before);
+  query.bind(++at, wanted.before);
+  query.bind(++at, wanted.limit + 1);
   Page<StoredCampaign> out;
   while (query.executeStep()) out.rows.push_back(stored_campaign(query));
-  out.more = out.rows.size() > static_cast<std::size_t>(limit);
+  out.more = out.rows.size() > static_cast<std::size_t>(wanted.limit);
   if (out.more) out.rows.pop_back();
-  Prepared count(db, "SELECT count(*) FROM campaigns WHERE project = ?");
-  count.bind(1, project);
+  SQLite::Statement count(db, "SELECT count(*) FROM campaigns WHERE " + all.sql);
+  bind_all(count);
   count.executeStep();
   out.total = count.getColumn(0).getInt64();
   return out;
+}
+
+bool relabel_campaign(Connection& db, std::int64_t id, const std::string& before,
+                      const std::string& request, const CampaignLabels& labels) {
+  Prepared update(db,
+                  "UPDATE campaigns SET request = ?1, stored_bytes = stored_bytes + ?4 "
+                  "WHERE id = ?2 AND request = ?3");
+  bind_blob(update, 1, request);
+  update.bind(2, id);
+  bind_blob(update, 3, before);
+  update.bind(4,
+              static_cast<std::int64_t>(request.size()) - static_cast<std::int64_t>(before.size()));
+  if (update.exec() == 0) return false;
+  Prepared remove(db, "DELETE FROM campaign_labels WHERE campaign = ?");
+  remove.bind(1, id);
+  remove.exec();
+  insert_campaign_labels(db, id, labels);
+  return true;
+}
+
+std::optional<CandidatesAdded::Kind> query_append(Connection& db, std::int64_t id,
+                                                  const std::string& request_id,
+                                                  const std::string& request_hash) {
+  if (request_id.empty()) return std::nullopt;
+  Prepared query(db,
+                 "SELECT request_hash FROM campaign_appends WHERE campaign = ? AND request_id = ?");
+  query.bind(1, id);
+  query.bind(2, request_id);
+  if (!query.executeStep()) return std::nullopt;
+  return query.getColumn(0).getString() == request_hash ? CandidatesAdded::Kind::kRepeated
+                                                        : CandidatesAdded::Kind::kRequestIdTaken;
+}
+
+int query_created_candidates(Connection& db, std::int64_t id) {
+  Prepared query(db,
+                 "SELECT coalesce((SELECT min(first_candidate) FROM campaign_appends WHERE "
+                 "campaign = ?1), (SELECT candidates FROM campaigns WHERE id = ?1), 0)");
+  query.bind(1, id);
+  query.executeStep();
+  return query.getColumn(0).getInt();
+}
+
+CandidatesAdded insert_candidates(Connection& db, const NewCandidates& added, Microseconds now,
+                                  int lost_attempts) {
+  using enum CandidatesAdded::Kind;
+  if (const auto earlier = query_append(db, added.campaign, added.request_id, added.request_hash)) {
+    return {*earlier, query_campaign(db, added.campaign)};
+  }
+  Prepared update(db,
+                  "UPDATE campaigns SET candidates = ?2, candidate_table = ?3, input_hash = ?4, "
+                  "cost_seconds = cost_seconds + ?5, "
+                  "stored_bytes = stored_bytes + length(?3) - length(candidate_table), "
+                  "lost_attempts = CASE state WHEN 3 THEN ?7 ELSE lost_attempts END, "
+                  "end_time = NULL, state = CASE state WHEN 3 THEN 1 ELSE state END "
+                  "WHERE id = ?1 AND state <= 3 AND candidates = ?6 RETURNING project");
+  update.bind(1, added.campaign);
+  update.bind(2, added.candidates);
+  bind_blob(update, 3, added.candidate_table);
+  update.bind(4, added.input_hash);
+  update.bind(5, added.cost_seconds);
+  update.bind(6, added.candidates_before);
+  update.bind(7, lost_attempts);
+  if (!update.executeStep()) return {kChanged, query_campaign(db, added.campaign)};
+  const std::string project = update.getColumn(0).getString();
+  update.executeStep();  // to its end: only then is it done
+  Prepared insert(db, "INSERT INTO campaign_appends VALUES (?, ?, nullif(?, ''), ?, ?)");
+  insert.bind(1, added.campaign);
+  insert.bind(2, added.candidates_before);
+  insert.bind(3, added.request_id);
+  insert.bind(4, added.request_hash);
+  insert.bind(5, now);
+  insert.exec();
+  insert_lubricants(db, added.campaign, project, added.candidate_lubricants);
+  return {kAdded, query_campaign(db, added.campaign)};
 }
 
 std::vector<std::int64_t> resume_campaigns(Connection& db) {

@@ -24,9 +24,31 @@ std::optional<StoredCampaign> query_numbered_campaign(Connection& db, const std:
                                                       std::int64_t number);
 std::optional<StoredCampaign> query_campaign_of_request(Connection& db, const std::string& project,
                                                         const std::string& request_id);
-/// Returns the campaigns of a project with numbers below `before` (0: all), the latest first.
-Page<StoredCampaign> query_campaigns(Connection& db, const std::string& project,
-                                     std::int64_t before, int limit);
+/// Which campaigns of a project a list has.
+struct CampaignQuery {
+  std::string project;
+  std::vector<Restriction> restrictions;  ///< all must be true
+  std::int64_t before = 0;                ///< only numbers below; 0: all
+  int limit = 0;
+};
+/// Returns the campaigns that satisfy the query, the latest first, and the number of those over all
+/// pages.
+Page<StoredCampaign> query_campaigns(Connection& db, const CampaignQuery& query);
+/// Replaces the request of a campaign, and its labels. Returns false, and changes nothing, if the
+/// request is no longer `before`.
+bool relabel_campaign(Connection& db, std::int64_t id, const std::string& before,
+                      const std::string& request, const CampaignLabels& labels);
+/// Adds candidates. A campaign that has SUCCEEDED is RUNNING again; `lost_attempts`: as in
+/// StoredCampaign, from then on.
+CandidatesAdded insert_candidates(Connection& db, const NewCandidates& added, Microseconds now,
+                                  int lost_attempts);
+/// Returns what the request that added candidates under a request_id says of itself: as kind
+/// kRepeated or kRequestIdTaken. Returns nullopt if none did.
+std::optional<CandidatesAdded::Kind> query_append(Connection& db, std::int64_t id,
+                                                  const std::string& request_id,
+                                                  const std::string& request_hash);
+/// Returns the number of candidates with which a campaign was created.
+int query_created_candidates(Connection& db, std::int64_t id);
 /// Returns the rows of all campaigns that are RUNNING, the oldest first. Called once by a process,
 /// before begin_campaign(). A suspect that an earlier process had begun is halved; of a single
 /// candidate the lost attempt is counted. Either explains the loss of that process, which counts

@@ -77,6 +77,9 @@ const std::vector<PropertyField>& property_fields(std::string_view collection) {
         {"input_hash", PropertyKind::kText}, {"lubricant", PropertyKind::kText},
         {"pinned", PropertyKind::kFlag},     {"state", PropertyKind::kEnum},
         {"surface", PropertyKind::kText},    {"vehicle", PropertyKind::kText}};
+    out["campaigns"] = {{"display_name", PropertyKind::kText}, {"gear_set", PropertyKind::kText},
+                        {"lubricant", PropertyKind::kText},    {"state", PropertyKind::kEnum},
+                        {"surface", PropertyKind::kText},      {"vehicle", PropertyKind::kText}};
     return out;
   }();
   static const std::vector<PropertyField> kNone;

@@ -16,15 +16,18 @@
 namespace tribodyn::server {
 namespace {
 
-/// Returns the condition that a simulation or a campaign used a revision of resource ?1. The
-/// columns have indexes.
-std::string uses(const StoredResource& resource) {
+/// Returns the condition that a simulation or a campaign used a revision of resource ?1, the latter
+/// also as one of its candidates. The columns have indexes.
+std::string uses(const StoredResource& resource, bool is_of_campaigns = false) {
   static const std::map<std::string, std::string> kColumns = {{"lubricants", "lubricant"},
                                                               {"gearSets", "gear_set"},
                                                               {"surfaces", "surface"},
                                                               {"vehicles", "vehicle"}};
-  return kColumns.at(collection_of(resource.name)) +
-         " IN (SELECT id FROM revisions WHERE resource = ?1)";
+  const std::string of_resource = " IN (SELECT id FROM revisions WHERE resource = ?1)";
+  const std::string as_input = kColumns.at(collection_of(resource.name)) + of_resource;
+  if (!is_of_campaigns) return as_input;
+  return "(" + as_input + " OR id IN (SELECT campaign FROM campaign_lubricants WHERE lubricant" +
+         of_resource + "))";
 }
 
 int remove_rows(Connection& db, const char* sql, std::int64_t key) {
@@ -36,7 +39,7 @@ int remove_rows(Connection& db, const char* sql, std::int64_t key) {
 /// Returns the rows of a table, simulations or campaigns, that used the resource.
 std::vector<std::int64_t> users_of(Connection& db, const std::string& table,
                                    const StoredResource& resource) {
-  Prepared query(db, "SELECT id FROM " + table + " WHERE " + uses(resource));
+  Prepared query(db, "SELECT id FROM " + table + " WHERE " + uses(resource, table == "campaigns"));
   query.bind(1, resource.id);
   std::vector<std::int64_t> out;
   while (query.executeStep()) out.push_back(query.getColumn(0).getInt64());
@@ -99,7 +102,7 @@ Dependents dependents_of(Connection& db, const StoredResource& resource) {
   results.bind(1, resource.id);
   results.executeStep();
   out.results = results.getColumn(0).getInt();
-  Prepared campaigns(db, "SELECT id, state FROM campaigns WHERE " + uses(resource));
+  Prepared campaigns(db, "SELECT id, state FROM campaigns WHERE " + uses(resource, true));
   campaigns.bind(1, resource.id);
   while (campaigns.executeStep()) {
     if (has_ended(static_cast<CampaignState>(campaigns.getColumn(1).getInt()))) {

@@ -1,6 +1,7 @@
 #include "server/storage/resource_types.h"
 
 #include "server/contract/resource_names.h"
+#include "tribodyn/v1/campaigns.pb.h"
 #include "tribodyn/v1/gear_sets.pb.h"
 #include "tribodyn/v1/lubricants.pb.h"
 #include "tribodyn/v1/simulations.pb.h"
@@ -27,6 +28,7 @@ std::unique_ptr<Message> new_resource(std::string_view collection) {
   if (collection == "surfaces") return std::make_unique<v1::Surface>();
   if (collection == "vehicles") return std::make_unique<v1::Vehicle>();
   if (collection == "simulations") return std::make_unique<v1::Simulation>();
+  if (collection == "campaigns") return std::make_unique<v1::Campaign>();
   return nullptr;
 }
 

@@ -147,6 +147,7 @@ void bring_from(Connection& database, int from, int to, Microseconds now) {
   if (passes(10)) database.exec(kSchema10);
   if (passes(11)) database.exec(kSchema11);
   if (passes(12)) database.exec(kSchema12);
+  if (passes(13)) database.exec(kSchema13);
   database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
   database.exec("PRAGMA user_version = " + std::to_string(to));
 }

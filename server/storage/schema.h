@@ -8,7 +8,7 @@
 
 namespace tribodyn::server {
 
-/// What is on disk, schema 12. Times are microseconds since 1970 (UTC). Messages are the protos of
+/// What is on disk, schema 13. Times are microseconds since 1970 (UTC). Messages are the protos of
 /// tribodyn.v1 in binary form: field numbers never change meaning.
 ///
 ///   projects     one row per project; last_number is that of its latest simulation, removed or
@@ -53,13 +53,18 @@ namespace tribodyn::server {
 ///                stored_bytes: of body and of the blocks of its history, which go together
 ///   campaigns    one row per campaign; number counts within its project. state as in
 ///                Campaign.State, stop_reason and stop_message why it is paused or failed.
-///                request: the Campaign as the client stated it, without its columns of candidates,
-///                which are the Campaign candidate_table. points_done and the like change with each
-///                tile. lost_attempts: processes that began to compute it and neither ended in good
-///                order nor wrote tiles for long, where no suspect explains the loss.
+///                request: the Campaign as the client stated it, without its candidates, which are
+///                the Campaign candidate_table; the name and the labels may change, candidates may
+///                be added. points_done and the like change with each tile. lost_attempts:
+///                processes that began to compute it and neither ended in good order nor wrote tiles
+///                for long, where no suspect explains the loss.
 ///                lost_candidates: those that are refused because processes were lost while they
 ///                computed them, since the campaign was resumed. stored_bytes: of both messages and
 ///                of all blobs. When a campaign is removed, all below goes with it
+///   campaign_labels  what lists are filtered by beside columns of campaigns, of its request
+///   campaign_lubricants  the lubricants that are candidates, in their revisions
+///   campaign_appends  one row for each time that candidates were added: the first of them, and what
+///                tells a repeated request_id, unique in its campaign, from a misused one
 ///   campaign_tiles  runs of rows that are computed; whole candidates each, in no row two
 ///   campaign_blobs  columns of tiles, compressed (column_codec.h). number: that of the column
 ///                (campaign_columns.h). checksum: of data
@@ -82,7 +87,7 @@ namespace tribodyn::server {
 ///
 /// The text of a schema that a release has written never changes: the tables of a database are
 /// compared with it (schema_differences).
-inline constexpr int kSchemaVersion = 12;
+inline constexpr int kSchemaVersion = 13;
 inline constexpr int kApplicationId = 0x54524244;  // "TRBD"
 
 /// Brings a database of schema `from`, 0 for an empty one, to kSchemaVersion in one transaction. A

@@ -537,4 +537,40 @@ CREATE TABLE campaign_suspects (
 ) STRICT, WITHOUT ROWID;
 )sql";
 
+inline constexpr char kSchema13[] = R"sql(
+CREATE TABLE campaign_labels (
+  key TEXT NOT NULL,
+  value TEXT NOT NULL,
+  campaign INTEGER NOT NULL REFERENCES campaigns (id) ON DELETE CASCADE,
+  PRIMARY KEY (key, value, campaign)
+) STRICT, WITHOUT ROWID;
+CREATE INDEX labels_of_campaign ON campaign_labels (campaign);
+
+CREATE TABLE campaign_lubricants (
+  campaign INTEGER NOT NULL REFERENCES campaigns (id) ON DELETE CASCADE,
+  lubricant INTEGER NOT NULL REFERENCES revisions (id),
+  PRIMARY KEY (campaign, lubricant)
+) STRICT, WITHOUT ROWID;
+CREATE INDEX campaigns_of_lubricant ON campaign_lubricants (lubricant);
+
+CREATE TABLE campaign_appends (
+  campaign INTEGER NOT NULL REFERENCES campaigns (id) ON DELETE CASCADE,
+  first_candidate INTEGER NOT NULL CHECK (first_candidate >= 1),
+  request_id TEXT CHECK (length(request_id) > 0),
+  request_hash TEXT NOT NULL CHECK (length(request_hash) = 64),
+  create_time INTEGER NOT NULL,
+  PRIMARY KEY (campaign, first_candidate)
+) STRICT, WITHOUT ROWID;
+CREATE UNIQUE INDEX one_append_per_request ON campaign_appends (campaign, request_id);
+
+DROP TRIGGER campaigns_end_once;
+CREATE TRIGGER campaigns_end_once BEFORE UPDATE OF state, stop_reason, stop_message, create_time,
+  end_time, request_id, request_hash, input_hash, model_version, platform, client, principal,
+  lubricant, gear_set, surface, vehicle, candidates, conditions, points_done, points_refused,
+  cost_seconds, processor_seconds, candidate_table ON campaigns
+WHEN OLD.state >= 3 AND NOT
+  (OLD.state = 3 AND NEW.state = 1 AND NEW.candidates > OLD.candidates)
+BEGIN SELECT RAISE(ABORT, 'a campaign that has ended changes only by further candidates'); END;
+)sql";
+
 }  // namespace tribodyn::server

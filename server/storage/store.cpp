@@ -627,9 +627,43 @@ std::optional<StoredCampaign> Store::campaign_of_request(const std::string& proj
               [&](Connection& db) { return query_campaign_of_request(db, project, request_id); });
 }
 
-Page<StoredCampaign> Store::campaigns(const std::string& project, std::int64_t before, int limit,
-                                      const CallLimits& limits) {
-  return read(limits, [&](Connection& db) { return query_campaigns(db, project, before, limit); });
+Page<StoredCampaign> Store::campaigns(const CampaignQuery& query, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) { return query_campaigns(db, query); });
+}
+
+std::optional<StoredCampaign> Store::relabel_campaign(const StoredCampaign& present,
+                                                      const std::string& request,
+                                                      const CampaignLabels& labels,
+                                                      const CallLimits& limits) {
+  std::optional<StoredCampaign> out;
+  write_together(limits, [&](Connection& db) {
+    out.reset();
+    if (server::relabel_campaign(db, present.id, present.request, request, labels)) {
+      out = query_campaign(db, present.id);
+    }
+  });
+  return out;
+}
+
+CandidatesAdded Store::add_candidates(const NewCandidates& added, Microseconds now,
+                                      int lost_attempts, const CallLimits& limits) {
+  CandidatesAdded out;
+  write_together(limits,
+                 [&](Connection& db) { out = insert_candidates(db, added, now, lost_attempts); });
+  tell_campaign_change();
+  return out;
+}
+
+std::optional<CandidatesAdded::Kind> Store::append_of_request(std::int64_t id,
+                                                              const std::string& request_id,
+                                                              const std::string& request_hash,
+                                                              const CallLimits& limits) {
+  return read(limits,
+              [&](Connection& db) { return query_append(db, id, request_id, request_hash); });
+}
+
+int Store::created_candidates(std::int64_t id, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) { return query_created_candidates(db, id); });
 }
 
 std::vector<std::int64_t> Store::resume_campaigns() {

@@ -217,8 +217,20 @@ class Store {
   std::optional<StoredCampaign> campaign_of_request(const std::string& project,
                                                     const std::string& request_id,
                                                     const CallLimits& limits = {});
-  Page<StoredCampaign> campaigns(const std::string& project, std::int64_t before, int limit,
+  Page<StoredCampaign> campaigns(const CampaignQuery& query, const CallLimits& limits = {});
+  /// Replaces the request of a campaign, and its labels. Returns nullopt, and changes nothing, if
+  /// the request is no longer that of `present`.
+  std::optional<StoredCampaign> relabel_campaign(const StoredCampaign& present,
+                                                 const std::string& request,
+                                                 const CampaignLabels& labels,
+                                                 const CallLimits& limits = {});
+  CandidatesAdded add_candidates(const NewCandidates& added, Microseconds now, int lost_attempts,
                                  const CallLimits& limits = {});
+  std::optional<CandidatesAdded::Kind> append_of_request(std::int64_t id,
+                                                         const std::string& request_id,
+                                                         const std::string& request_hash,
+                                                         const CallLimits& limits = {});
+  int created_candidates(std::int64_t id, const CallLimits& limits = {});
   std::vector<std::int64_t> resume_campaigns();
   std::string candidate_table(std::int64_t id, const CallLimits& limits = {});
   std::optional<StoredCampaign> change_campaign(const CampaignChange& change,

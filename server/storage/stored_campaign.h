@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/contract/resource_names.h"
@@ -28,6 +29,8 @@ struct CampaignBudget {
   std::int64_t points = 0;
 };
 
+using CampaignLabels = std::vector<std::pair<std::string, std::string>>;  ///< by key
+
 /// A campaign before it is stored.
 struct NewCampaign {
   std::string project = kDefaultProject;
@@ -44,11 +47,26 @@ struct NewCampaign {
   int conditions = 1;
   double cost_seconds = 0;  ///< estimate, in seconds of one processor
   CampaignBudget budget;
+  CampaignLabels labels;
   // Revisions of its resources, as relative names; each exists in the project.
   std::string lubricant_revision;
   std::string gear_set_revision;
   std::string surface_revision;
   std::string vehicle_revision;
+  std::vector<std::string> candidate_lubricants;  ///< candidates that are lubricants, likewise
+};
+
+/// Candidates that are added to a campaign.
+struct NewCandidates {
+  std::int64_t campaign = 0;                      ///< row
+  std::string request_id;                         ///< empty: none
+  std::string request_hash;                       ///< of everything that the client set
+  int candidates_before = 0;                      ///< number of its candidates when it was read
+  int candidates = 0;                             ///< number of its candidates with these
+  std::string candidate_table;                    ///< of all candidates, as in NewCampaign
+  std::string input_hash;                         ///< of all candidates
+  double cost_seconds = 0;                        ///< of these candidates alone
+  std::vector<std::string> candidate_lubricants;  ///< these candidates, as in NewCampaign
 };
 
 struct StoredCampaign {
@@ -104,6 +122,19 @@ struct CampaignAdded {
   };
   Kind kind = Kind::kAdded;
   StoredCampaign stored;
+};
+
+/// Outcome of Store::add_candidates().
+struct CandidatesAdded {
+  enum class Kind {
+    kAdded,
+    kRepeated,        ///< an earlier request with the same id and hash added them
+    kRequestIdTaken,  ///< an earlier request with the same id and another hash added candidates
+    kChanged,         ///< the campaign has other candidates than those that were read, has FAILED,
+                      ///< is CANCELLED or was removed; nothing has changed
+  };
+  Kind kind = Kind::kAdded;
+  std::optional<StoredCampaign> stored;  ///< the campaign as it is now; empty if it was removed
 };
 
 /// A run of rows.

@@ -201,6 +201,10 @@ TEST_P(EveryMethod, SuggestsTheNearestNameForAnUnknownOne) {
       set_inner("simulation", "name", "simulations/99999");
       return expect_refused(*message, "simulations/99999");
     }
+    if (method == "UpdateCampaign") {
+      set_inner("campaign", "name", "campaigns/99999");
+      return expect_refused(*message, "campaigns/99999");
+    }
     if (method == "WatchSimulations") {
       message->GetReflection()->AddString(
           message.get(), message->GetDescriptor()->FindFieldByName("names"), "simulations/99999");

@@ -135,6 +135,11 @@ TEST_P(OldSchema, IsMigratedAndLosesNothing) {
       static_cast<std::int64_t>(store.events({.simulations = {1, 2, 3, 4, 5, 6, 7}}).events.size()))
       << "events have numbers";
   EXPECT_THAT(store.requeue_unfinished(9), SizeIs(2));
+  if (GetParam() >= 11) {  // with a campaign that has succeeded
+    const auto campaign = store.numbered_campaign("default", 1);
+    ASSERT_TRUE(campaign);
+    EXPECT_TRUE(store.relabel_campaign(*campaign, campaign->request, {{"project", "axle"}}));
+  }
   EXPECT_THAT(check_database(file, hash_stored_inputs), IsEmpty());
   SQLite::Database raw(file, SQLite::OPEN_READWRITE);
   EXPECT_EQ(raw.execAndGet("PRAGMA user_version").getInt(), kSchemaVersion);

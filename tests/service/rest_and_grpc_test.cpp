@@ -503,6 +503,11 @@ void RestAndGrpc::check_campaigns() {
   check("GetCampaign", "name: 'campaigns/9'", Code::NOT_FOUND);
   check("ListCampaigns", "");
   check("ListCampaigns", "page_token: 'x'", Code::INVALID_ARGUMENT);
+  check("UpdateCampaign", R"(campaign { name: "campaigns/1" display_name: "a & b?" labels {
+        key: "project" value: "axle" } } update_mask { paths: "display_name" paths: "labels" })");
+  check("UpdateCampaign", R"(campaign { name: "campaigns/9" display_name: "x" })", Code::NOT_FOUND);
+  check("ListCampaigns", "filter: 'labels.project = axle AND state = SUCCEEDED'");
+  check("ListCampaigns", "filter: 'labels'", Code::INVALID_ARGUMENT);
   check("PauseCampaign", "name: 'campaigns/1'");
   check("PauseCampaign", "name: 'campaigns/9'", Code::NOT_FOUND);
   check("ResumeCampaign", "name: 'campaigns/1'", Code::FAILED_PRECONDITION);
@@ -522,6 +527,8 @@ void RestAndGrpc::check_campaigns() {
   check("ReadCampaign",
         "name: 'campaigns/1' start_row: 1 row_count: 2 columns: 'mesh_loss_power_watts'");
   check("ReadCampaign", "name: 'campaigns/1' columns: 'mesh_loss'", Code::INVALID_ARGUMENT);
+  check("ReadCampaign", "name: 'campaigns/1' columns: 'row' filter: 'condition = 0'");
+  check("ReadCampaign", "name: 'campaigns/1' filter: 'x = 0'", Code::INVALID_ARGUMENT);
   check("RankCandidates", R"(name: "campaigns/1" objective { wants_most: true } uncertainties {
       parameter: "surface.asperity_friction_coefficient" relative_uncertainty: 0.1 })");
   check("RankCandidates", "name: 'campaigns/1' count: -1", Code::INVALID_ARGUMENT);
@@ -539,6 +546,11 @@ void RestAndGrpc::check_campaigns() {
   check("PromoteCandidate",
         "name: 'campaigns/1' candidate: 1 lubricant_id: 'promoted' surface_id: 'promoted'",
         Code::ALREADY_EXISTS);
+  const std::string more = R"( candidate_columns { path: "surface.asperity_friction_coefficient"
+      values: 0.09 } )";
+  check("AppendCandidates", "name: 'campaigns/3'" + more + "request_id: 'a' validate_only: true");
+  check("AppendCandidates", "name: 'campaigns/3'" + more + "request_id: 'a'");
+  check("AppendCandidates", "name: 'campaigns/1'" + more, Code::INVALID_ARGUMENT);
   check("DeleteCampaign", "name: 'campaigns/1'");
   check("DeleteCampaign", "name: 'campaigns/1'", Code::NOT_FOUND);
 }

@@ -6,7 +6,14 @@
 #include <optional>
 
 #include "client/cpp/commands/command.h"
+#include "client/cpp/commands/label_filter.h"
+#include "client/cpp/commands/resource_writes.h"
+#include "client/cpp/report/screening.h"
+#include "client/cpp/resources/candidate_table.h"
+#include "client/cpp/resources/json_input.h"
+#include "client/cpp/resources/table_files.h"
 #include "client/cpp/service/campaign_run.h"
+#include "client/cpp/service/screening_campaign.h"
 #include "client/cpp/text/csv.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
@@ -24,6 +31,12 @@ struct CampaignFlags {
   std::vector<std::string> columns;
   int start_row = 0;
   std::optional<int> row_count;
+  std::string row_filter;
+  std::vector<std::string> label_filters;
+  v1::Campaign changed;                  ///< display name and labels
+  std::vector<std::string> update_mask;  ///< which of them change
+  std::string path;                      ///< of a table
+  std::vector<std::string> lubricants;
 };
 
 std::string day_and_time(const google::protobuf::Timestamp& time) {
@@ -136,7 +149,9 @@ std::string campaign_sheet(const v1::Campaign& campaign) {
 }
 
 int run_campaigns_list(const CampaignFlags& flags, const CommonOptions& options) {
-  const auto list = options.connect().list_campaigns(flags.list);
+  ListOptions wanted = flags.list;
+  wanted.filter = with_labels(wanted.filter, flags.label_filters);
+  const auto list = options.connect().list_campaigns(wanted);
   std::cout << campaigns_text(list.resources, options.output_format);
   if (list.has_more) {
     std::cerr << "These are " << list.resources.size() << " of " << list.total_size
@@ -195,6 +210,55 @@ int run_campaigns_resume(const CampaignFlags& flags, const CommonOptions& option
   });
 }
 
+int run_campaigns_update(const CampaignFlags& flags, const CommonOptions& options) {
+  return run_campaigns_each(flags, options, [&](Connection& connection, const std::string& name) {
+    v1::Campaign campaign = flags.changed;
+    campaign.set_name(name);
+    return connection.update_campaign(campaign, flags.update_mask);
+  });
+}
+
+/// Returns the request that adds the rows of a table to a campaign. A parameter of the campaign
+/// that the table leaves out is as in the base.
+v1::AppendCandidatesRequest rows_to_append(const CampaignFlags& flags, const v1::Schema& schema,
+                                           const v1::Campaign& campaign, Connection& connection) {
+  const std::string text = read_table_file(flags.path, kLargestFile);
+  CandidateBase base;
+  base.lubricant = connection.get<v1::Lubricant>(campaign.lubricant_revision());
+  base.surface = connection.get<v1::Surface>(campaign.surface_revision());
+  const ResourcePointer stated = base_of_rows(connection, kind_of(*v1::Lubricant::descriptor()),
+                                              campaign.lubricant_revision());
+  base.stated = dynamic_cast<const v1::Lubricant&>(*stated);
+  Screening further;
+  further.table = read_candidates(text, flags.path, base, {});
+  if (!further.table.note.empty()) {
+    std::cerr << "tribodyn: " << printable(further.table.note) << "\n";
+  }
+  characterise_candidates(connection, base, further.table);
+  check_candidate_ranges(schema, further.table);
+  for (std::size_t i = 0; i < further.table.size(); ++i) {
+    if (further.table.refusals[i].empty()) continue;
+    throw Failure(kExitFailed, "candidate " + printable(further.table.names[i]) +
+                                   " cannot be computed: " + printable(further.table.refusals[i]));
+  }
+  further.bases = std::move(base);
+  return further_candidates(further, campaign);
+}
+
+int run_campaigns_append(const CampaignFlags& flags, const CommonOptions& options) {
+  Connection connection = options.connect();
+  const std::string name = resource_name("campaigns", flags.names.front());
+  v1::AppendCandidatesRequest request;
+  if (!flags.path.empty()) {
+    const v1::Campaign campaign = connection.get_campaign(name, v1::CAMPAIGN_VIEW_FULL);
+    request = rows_to_append(flags, connection.schema(), campaign, connection);
+  }
+  request.set_name(name);
+  *request.mutable_candidate_lubricants() = {flags.lubricants.begin(), flags.lubricants.end()};
+  std::cout << campaigns_text({connection.append_candidates(request)}, options.output_format);
+  return kExitOk;
+}
+
 int run_campaigns_cancel(const CampaignFlags& flags, const CommonOptions& options) {
   return run_campaigns_each(flags, options, [](Connection& connection, const std::string& name) {
     report_ended(connection.get_campaign(name), "cancel");
@@ -237,12 +301,14 @@ void print_csv(Connection& connection, const std::string& name, const CampaignRo
 void print_table(Connection& connection, const std::string& name, const CampaignRowsOptions& part) {
   std::optional<Table> table;
   std::int64_t row_number = part.start_row;
+  const bool is_filtered = !part.filter.empty();
   v1::HistorySchema schema;
   connection.stream_campaign(
       name, part,
       [&](const v1::HistorySchema& found) {
         schema = found;
-        std::vector<Table::Column> columns = {{"row", "", Table::Align::kRight}};
+        std::vector<Table::Column> columns = {
+            {is_filtered ? "match" : "row", "", Table::Align::kRight}};
         for (const auto& each : found.columns()) {
           columns.push_back({each.name(), each.unit(), Table::Align::kDecimal});
         }
@@ -257,7 +323,10 @@ void print_table(Connection& connection, const std::string& name, const Campaign
         }
       });
   std::cout << table->text();
-  if (row_number < schema.total_rows()) {
+  if (is_filtered) {
+    std::cerr << row_number - part.start_row << " of the rows looked at satisfy the filter; the "
+              << "column row has their numbers.\n";
+  } else if (row_number < schema.total_rows()) {
     std::cerr << "Rows " << part.start_row << " to " << row_number - 1 << " of "
               << schema.total_rows()
               << ", counted from 0; --start-row, --row-count and --output csv "
@@ -294,8 +363,10 @@ int run_campaigns_columns(const CampaignFlags& flags, const CommonOptions& optio
   CampaignRowsOptions part;
   part.columns = flags.columns;
   part.start_row = flags.start_row;
+  part.filter = flags.row_filter;
   const bool is_table = options.output_format == OutputFormat::kTable;
-  part.row_count = flags.row_count.value_or(is_table ? kRowsOfATable : 0);
+  const bool is_short = is_table && part.filter.empty();
+  part.row_count = flags.row_count.value_or(is_short ? kRowsOfATable : 0);
   switch (options.output_format) {
     case OutputFormat::kTable:
       print_table(connection, name, part);
@@ -356,6 +427,14 @@ Command campaigns_list_command() {
   command.flags.text("--page-token", "TOKEN",
                      "Read the next page; the previous page printed the token.",
                      [flags](const std::string& text) { flags->list.page_token = text; });
+  command.flags.text(
+      "--filter", "FILTER",
+      "Only campaigns that satisfy it, e.g. 'state = RUNNING AND lubricant = my-oil'; "
+      "fields: display_name, state, lubricant, gear_set, surface, vehicle and "
+      "labels.KEY.",
+      [flags](const std::string& text) { flags->list.filter = text; });
+  command.flags.texts("--label", "KEY[=VALUE]", "List only campaigns with this label; repeatable.",
+                      [flags](const std::string& text) { flags->label_filters.push_back(text); });
   command.check = [flags](Complaints& complaints) {
     if (flags->list.limit < 1 || flags->list.limit > 100000) {
       complaints.emplace_back("--limit must be 1 to 100000");
@@ -374,6 +453,73 @@ Command campaigns_show_command() {
                           "candidates.",
                           "tribodyn campaigns show 12", false, run_campaigns_show,
                           std::make_shared<CampaignFlags>());
+}
+
+Command campaigns_update_command() {
+  const auto flags = std::make_shared<CampaignFlags>();
+  Command command = campaign_command(
+      "campaigns update", "change the title or the labels of campaigns",
+      "Changes the title or the labels of campaigns, whatever their state. Labels that are given "
+      "take the place of all present ones.",
+      "tribodyn campaigns update 12 --title 'Friction modifiers' --label project=axle", true,
+      run_campaigns_update, flags);
+  command.flags.group("Options");
+  const auto changes = [flags](const std::string& field) {
+    auto& mask = flags->update_mask;
+    if (std::find(mask.begin(), mask.end(), field) == mask.end()) mask.push_back(field);
+  };
+  command.flags.text("--title", "TEXT", "The title; '' removes it.",
+                     [flags, changes](const std::string& text) {
+                       flags->changed.set_display_name(text);
+                       changes("display_name");
+                     });
+  command.flags.texts("--label", "KEY=VALUE", "A label; repeatable.",
+                      [flags, changes](const std::string& text) {
+                        const std::size_t mark = text.find('=');
+                        v1::Label& added = *flags->changed.add_labels();
+                        added.set_key(text.substr(0, mark));
+                        if (mark != std::string::npos) added.set_value(text.substr(mark + 1));
+                        changes("labels");
+                      });
+  command.flags.toggle("--no-labels", "Remove all labels.", [changes] { changes("labels"); });
+  const auto check_names = command.check;
+  command.check = [flags, check_names](Complaints& complaints) {
+    check_names(complaints);
+    if (flags->update_mask.empty()) {
+      complaints.emplace_back("give --title, --label or --no-labels: nothing would change");
+    }
+  };
+  return command;
+}
+
+Command campaigns_append_command() {
+  const auto flags = std::make_shared<CampaignFlags>();
+  Command command = campaign_command(
+      "campaigns append", "add candidates to a campaign",
+      "Adds the rows of a table to the candidates of a campaign, or lubricants to one whose "
+      "candidates are lubricants. What is computed stays; a campaign that has succeeded runs "
+      "again. "
+      "The table has the columns of the one that the campaign was made of. `tribodyn screen "
+      "--campaign NAME` follows and ranks them.",
+      "tribodyn campaigns append 12 more.csv", false, run_campaigns_append, flags);
+  command.flags.text("table", "FILE.csv",
+                     "Table of further candidates, one a row; - is standard input.",
+                     [flags](const std::string& path) { flags->path = path; });
+  command.flags.group("Options");
+  command.flags
+      .texts("--lubricants", "NAME", "Lubricants in place of a table, separated by commas",
+             [flags](const std::string& name) {
+               flags->lubricants.push_back(resource_name("lubricants", name));
+             })
+      .collection = "lubricants";
+  const auto check_names = command.check;
+  command.check = [flags, check_names](Complaints& complaints) {
+    check_names(complaints);
+    if (flags->path.empty() == flags->lubricants.empty()) {
+      complaints.emplace_back("give either a table or --lubricants");
+    }
+  };
+  return command;
 }
 
 Command campaigns_resume_command() {
@@ -423,7 +569,7 @@ Command campaigns_columns_command() {
       "figures; n: sentence n of `campaigns show`; -1: not computed yet); candidate, condition; "
       "the "
       "fields of conditions, e.g. speed_kilometres_per_hour; the parameters of candidates, e.g. "
-      "lubricant.relaxation_time_seconds; and the numbers that ride along with them.",
+      "lubricant.relaxation_time_seconds; row; and the numbers that ride along with them.",
       "tribodyn campaigns columns 12 --columns candidate,inefficiency_energy_mean_percent "
       "--output csv",
       false, run_campaigns_columns, flags);
@@ -436,6 +582,10 @@ Command campaigns_columns_command() {
   command.flags.whole_number("--row-count", {"rows", "0 or more", "20 in a table, else all"},
                              "Number of rows; 0: to the end",
                              [flags](int value) { flags->row_count = value; });
+  command.flags.text("--filter", "FILTER",
+                     "Only rows that satisfy all conditions, e.g. 'refusal_number > 0' or "
+                     "'film_ratio_minimum < 1 AND additive = ZDDP': columns with = != < <= > >=.",
+                     [flags](const std::string& text) { flags->row_filter = text; });
   return command;
 }
 
@@ -445,6 +595,8 @@ std::vector<Command> campaign_commands() {
   std::vector<Command> out;
   out.push_back(campaigns_list_command());
   out.push_back(campaigns_show_command());
+  out.push_back(campaigns_update_command());
+  out.push_back(campaigns_append_command());
   out.push_back(campaign_command(
       "campaigns pause", "pause campaigns",
       "Pauses campaigns; what is computed is kept, and `campaigns resume` continues them.",

@@ -47,7 +47,11 @@ cell. An empty cell leaves the value of the base.
   A1,0.5,19.8,0.11
   A2,1.0,,0.09
 
-`tribodyn design` makes such tables from ranges, or from the uncertainties of a lubricant.
+`tribodyn design` makes such tables from ranges, or from the uncertainties of a lubricant. `tribodyn
+screen --range PARAMETER=LOW:HIGH --count N` has the server make the same candidates and needs no table;
+without a range they spread by the standard uncertainties of --like. `--lubricants A,B` and
+`--lubricant-filter FILTER` screen lubricants that exist. `tribodyn campaigns append NAME more.csv` adds
+candidates to a campaign.
 
 A candidate with a value outside its range, or that the model refuses, is listed with the reason; the
 others are ranked. --csv FILE and --jsonl FILE write every candidate at every condition.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "client/cpp/commands/candidate_flags.h"
+#include "client/cpp/commands/design_flags.h"
 #include "client/cpp/commands/resource_writes.h"
 #include "client/cpp/commands/result_files.h"
 #include "client/cpp/commands/scenario.h"
@@ -32,10 +33,15 @@ namespace {
 constexpr int kLeastCompared = 30, kMostCompared = 200;
 
 constexpr int kMostPointsOfACampaign = 20'000'000;  // that the server takes
+constexpr int kMostCandidates = 100'000;            // likewise
 
 struct ScreenFlags {
   std::string path;
   std::string campaign;  ///< name of a campaign in place of a table
+  // Candidates that the server makes or finds, in place of a table.
+  DesignFlags design;
+  std::vector<std::string> lubricants;
+  std::string lubricant_filter;
   std::optional<v1::CampaignBudget> budget;
   v1::EvaluatePointsRequest request;  ///< without conditions
   std::vector<double> speeds, sumps;
@@ -51,6 +57,13 @@ struct ScreenFlags {
   bool wants_most = false;
   bool wants_effects = false;
 };
+
+bool has_design(const ScreenFlags& flags) {
+  return flags.design.has_ranges || flags.design.has_method;
+}
+bool has_lubricants(const ScreenFlags& flags) {
+  return !flags.lubricants.empty() || !flags.lubricant_filter.empty();
+}
 
 v1::CampaignBudget& budget_of(ScreenFlags& flags) {
   if (!flags.budget) flags.budget.emplace();
@@ -80,6 +93,20 @@ void add_screen_flags(FlagList& list, ScreenFlags& flags) {
           "in place of a table and its conditions.",
           [&flags](const std::string& name) { flags.campaign = resource_name("campaigns", name); })
       .collection = "campaigns";
+  list.group("Candidates without a table");
+  list.texts("--lubricants", "NAME",
+             "Lubricants that are the candidates, separated by commas; --like then defaults to the "
+             "first one.",
+             [&flags](const std::string& name) {
+               flags.lubricants.push_back(resource_name("lubricants", name));
+             })
+      .collection = "lubricants";
+  list.text("--lubricant-filter", "FILTER",
+            "Candidates are the lubricants that satisfy it, as of `tribodyn lubricants list "
+            "--filter`.",
+            [&flags](const std::string& text) { flags.lubricant_filter = text; });
+  add_range_flags(list, flags.design);
+  add_method_flags(list, kMostCandidates, flags.design);
   list.group("Conditions (every speed at every sump temperature)");
   list.numbers("--speed-kilometres-per-hour,--speeds,--speed", {"km/h", "0.1 to 400", "60"},
                "Vehicle speeds separated by commas",
@@ -175,6 +202,9 @@ void check_campaign_flags(const ScreenFlags& flags, Complaints& complaints) {
   const std::pair<const char*, bool> given[] = {
       {"a table", !flags.path.empty()},
       {"--like", !request.lubricant().empty()},
+      {"--lubricants", !flags.lubricants.empty()},
+      {"--lubricant-filter", !flags.lubricant_filter.empty()},
+      {"a design", has_design(flags)},
       {"--carry", !flags.carried.empty()},
       {"--speeds", !flags.speeds.empty()},
       {"--sumps", !flags.sumps.empty()},
@@ -192,14 +222,38 @@ void check_campaign_flags(const ScreenFlags& flags, Complaints& complaints) {
   }
 }
 
+/// Checks which candidates there are.
+void check_candidate_flags(const ScreenFlags& flags, Complaints& complaints) {
+  std::vector<std::string> given;
+  if (!flags.path.empty()) given.emplace_back("a table");
+  if (!flags.lubricants.empty()) given.emplace_back("--lubricants");
+  if (!flags.lubricant_filter.empty()) given.emplace_back("--lubricant-filter");
+  if (has_design(flags)) given.emplace_back("a design (--range, --method, --count)");
+  if (given.empty()) {
+    complaints.emplace_back(
+        "give a table: tribodyn screen candidates.csv --like LUBRICANT; or --lubricants, "
+        "--lubricant-filter, or ranges of a design (--range)");
+  } else if (given.size() > 1) {
+    complaints.push_back(joined(given, " and ") + ": give one; each states the candidates");
+  }
+  if (flags.request.lubricant().empty() && !has_lubricants(flags)) {
+    complaints.emplace_back("--like is missing");
+  }
+  if (flags.path.empty() && !flags.carried.empty()) {
+    complaints.emplace_back("--carry names columns of a table, which is missing");
+  }
+  if (!has_design(flags)) return;
+  check_design_flags(flags.design, kMostCandidates, complaints);
+  if (flags.design.method == DesignMethod::kGrid && !flags.design.has_ranges) {
+    complaints.emplace_back("--method grid needs --range PARAMETER=LOW:HIGH");
+  }
+}
+
 void check_screen_flags(const ScreenFlags& flags, Complaints& complaints) {
   if (!flags.campaign.empty()) {
     check_campaign_flags(flags, complaints);
   } else {
-    if (flags.path.empty()) {
-      complaints.emplace_back("give a table: tribodyn screen candidates.csv --like LUBRICANT");
-    }
-    if (flags.request.lubricant().empty()) complaints.emplace_back("--like is missing");
+    check_candidate_flags(flags, complaints);
     check_weights("--weights", flags.speed_weights.size(), flags.speeds.size(), "speeds",
                   complaints);
     check_weights("--sump-weights", flags.sump_weights.size(), flags.sumps.size(),
@@ -326,12 +380,58 @@ void set_weights(const ScreenFlags& flags, Screening& screening) {
   for (double& weight : screening.weights) weight /= sum;
 }
 
+/// Returns the revisions of the lubricants that are candidates, in their order.
+std::vector<std::string> candidate_lubricants(const ScreenFlags& flags, Connection& connection) {
+  std::vector<v1::Lubricant> found;
+  for (const std::string& name : flags.lubricants) {
+    found.push_back(connection.get<v1::Lubricant>(name));
+  }
+  if (!flags.lubricant_filter.empty()) {
+    ListOptions list;
+    list.filter = flags.lubricant_filter;
+    found = connection.list<v1::Lubricant>(list).resources;
+    if (found.empty()) {
+      throw Failure(kExitUsage, "--lubricant-filter: no lubricant satisfies it");
+    }
+  }
+  std::vector<std::string> out;
+  for (const v1::Lubricant& each : found) {
+    const std::string name = each.name().substr(0, each.name().find('@'));
+    out.push_back(name + "@" + std::to_string(each.revision()));
+  }
+  return out;
+}
+
+/// Creates the campaign whose candidates the server makes or finds, or finds the one that the same
+/// command made.
+v1::Campaign made_campaign(ScreenFlags& flags, Connection& connection) {
+  Screening screening;
+  screening.request = flags.request;
+  set_conditions(flags, screening);
+  const std::vector<std::string> lubricants = candidate_lubricants(flags, connection);
+  if (screening.request.lubricant().empty()) screening.request.set_lubricant(lubricants.front());
+  screening.base = connection.evaluate_points(screening.request);
+  screening.request.set_lubricant(screening.base.lubricant_revision());
+  screening.request.set_surface(screening.base.surface_revision());
+  screening.request.set_gear_set(screening.base.gear_set_revision());
+  screening.request.set_vehicle(screening.base.vehicle_revision());
+  v1::Campaign request = campaign_without_candidates(
+      screening, lubricants.empty() ? "design" : std::to_string(lubricants.size()) + " lubricants");
+  if (has_design(flags)) *request.mutable_candidate_design() = design_message(flags.design);
+  *request.mutable_candidate_lubricants() = {lubricants.begin(), lubricants.end()};
+  CreateCampaignOptions create;
+  create.request_id = screening_request_id(request, screening.base.model_version());
+  return connection.create_campaign(request, create);
+}
+
 /// Returns the campaign that the command line describes, and writes its candidates and conditions
 /// to `screening`.
 v1::Campaign campaign_to_follow(ScreenFlags& flags, const v1::Schema& schema,
                                 Connection& connection, Screening& screening) {
-  if (!flags.campaign.empty()) {
-    v1::Campaign campaign = connection.get_campaign(flags.campaign, v1::CAMPAIGN_VIEW_FULL);
+  if (!flags.campaign.empty() || has_design(flags) || has_lubricants(flags)) {
+    const std::string name =
+        flags.campaign.empty() ? made_campaign(flags, connection).name() : flags.campaign;
+    v1::Campaign campaign = connection.get_campaign(name, v1::CAMPAIGN_VIEW_FULL);
     screening = screening_of(connection, campaign);
     set_weights(flags, screening);
     return campaign;
@@ -515,15 +615,18 @@ Command screen_command() {
        "tribodyn screen oils.csv --like my-oil --effects --plot screening.svg",
        "tribodyn screen oils.csv --like my-oil --contact-figures --csv all.csv",
        "tribodyn screen candidates.csv --like my-oil --output csv",
+       "tribodyn screen --lubricants my-oil,your-oil,paper-fluid-2 --speeds 20,60",
+       "tribodyn screen --like my-oil --range relaxation-time=0.2us:0.6us --count 128",
        "tribodyn screen --campaign 12 --weights 2,1,1"},
       {},
       {},
       {}};
   add_screen_flags(command.flags, *flags);
   command.check = [flags](Complaints& complaints) { check_screen_flags(*flags, complaints); };
-  command.main_flags = {"table",         "--like",    "--speeds",  "--sumps",    "--weights",
-                        "--uncertainty", "--pareto",  "--plot",    "--effects",  "--top",
-                        "--csv",         "--surface", "--vehicle", "--gear-set", "--campaign"};
+  command.main_flags = {"table",     "--like",        "--speeds",   "--sumps",
+                        "--weights", "--uncertainty", "--pareto",   "--plot",
+                        "--effects", "--top",         "--csv",      "--surface",
+                        "--range",   "--gear-set",    "--campaign", "--lubricants"};
   command.run = [flags](const CommonOptions& options) { return run_screen(*flags, options); };
   return command;
 }

@@ -45,6 +45,7 @@ Listing<v1::Campaign> Connection::list_campaigns(const ListOptions& options) {
   Listing<v1::Campaign> all;
   v1::ListCampaignsRequest request;
   request.set_page_token(options.page_token);
+  request.set_filter(options.filter);
   const int limit = options.limit;
   do {
     const int missing = limit - static_cast<int>(all.resources.size());
@@ -59,6 +60,21 @@ Listing<v1::Campaign> Connection::list_campaigns(const ListOptions& options) {
   all.next_page_token = request.page_token();
   all.has_more = !all.next_page_token.empty();
   return all;
+}
+
+v1::Campaign Connection::update_campaign(const v1::Campaign& campaign,
+                                         const std::vector<std::string>& update_mask) {
+  v1::UpdateCampaignRequest request;
+  *request.mutable_campaign() = campaign;
+  for (const std::string& each : update_mask) request.mutable_update_mask()->add_paths(each);
+  return services_->call(*services_->campaigns, &v1::CampaignService::Stub::UpdateCampaign,
+                         request);
+}
+
+v1::Campaign Connection::append_candidates(v1::AppendCandidatesRequest request) {
+  if (request.request_id().empty()) request.set_request_id(new_request_id());
+  return services_->call(*services_->campaigns, &v1::CampaignService::Stub::AppendCandidates,
+                         request);
 }
 
 v1::Campaign Connection::pause_campaign(const std::string& name) {
@@ -124,9 +140,10 @@ void Connection::stream_campaign(const std::string& name, const CampaignRowsOpti
   *request.mutable_columns() = {options.columns.begin(), options.columns.end()};
   request.set_start_row(options.start_row);
   request.set_row_count(options.row_count);
+  request.set_filter(options.filter);
   stream_columns<v1::ReadCampaignResponse>(*services_, *services_->campaigns,
                                            &v1::CampaignService::Stub::ReadCampaign, request,
-                                           on_schema, on_rows);
+                                           on_schema, on_rows, options.filter.empty());
 }
 
 v1::RankCandidatesResponse Connection::rank_candidates(const v1::RankCandidatesRequest& request) {

@@ -43,13 +43,14 @@ class RowJoiner {
 
 /// Reads a stream of columns from request.start_row on. Calls `on_schema` once and `on_rows` for
 /// rows as they arrive, once and in order. Resumes a broken stream at the first missing row, for a
-/// limited time. Throws ServiceError.
+/// limited time; unless `is_resumable`, only one that has brought no rows. Throws ServiceError.
 template <class Response, class Services, class Stub, class Request>
 void stream_columns(const Services& services, Stub& stub,
                     std::unique_ptr<grpc::ClientReader<Response>> (Stub::*method)(
                         grpc::ClientContext*, const Request&),
                     Request request, const std::function<void(const v1::HistorySchema&)>& on_schema,
-                    const std::function<void(const HistoryRows&)>& on_rows) {
+                    const std::function<void(const HistoryRows&)>& on_rows,
+                    bool is_resumable = true) {
   const std::int64_t start_row = request.start_row(), row_count = request.row_count();
   std::optional<v1::HistorySchema> schema;
   std::int64_t done = 0;  // rows that on_rows has received
@@ -87,7 +88,8 @@ void stream_columns(const Services& services, Stub& stub,
     if (status.ok()) return;
     const bool is_broken = status.error_code() == grpc::StatusCode::UNAVAILABLE ||
                            status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED;
-    if (!is_broken || tries_left-- == 0 || (never_connected(status) && !schema)) {
+    if (!is_broken || tries_left-- == 0 || (never_connected(status) && !schema) ||
+        (!is_resumable && done > 0)) {
       throw service_error(status, services.address);
     }
     std::this_thread::sleep_for(backoff.next(kBetweenReads));

@@ -211,7 +211,7 @@ std::vector<std::size_t> accepted_candidates(const CandidateTable& table) {
   return out;
 }
 
-v1::Campaign campaign_of(const Screening& screening, const std::string& title) {
+v1::Campaign campaign_without_candidates(const Screening& screening, const std::string& title) {
   const v1::EvaluatePointsRequest& base = screening.request;
   v1::Campaign out;
   out.set_display_name(cut(title, kLongestAttributeText));
@@ -228,6 +228,11 @@ v1::Campaign campaign_of(const Screening& screening, const std::string& title) {
                   [&](double each) { return each != weights.front(); })) {
     *out.mutable_condition_weights() = {weights.begin(), weights.end()};
   }
+  return out;
+}
+
+v1::Campaign campaign_of(const Screening& screening, const std::string& title) {
+  v1::Campaign out = campaign_without_candidates(screening, title);
   const std::vector<std::size_t> candidates = accepted_candidates(screening.table);
   for (const CandidateParameter& parameter : screening.table.parameters) {
     v1::CandidateColumn& column = *out.add_candidate_columns();
@@ -236,6 +241,33 @@ v1::Campaign campaign_of(const Screening& screening, const std::string& title) {
   }
   if (screening.table.parameters.empty()) add_equal_column(screening.bases, candidates.size(), out);
   add_attributes(screening.table, candidates, out);
+  return out;
+}
+
+v1::AppendCandidatesRequest further_candidates(const Screening& screening,
+                                               const v1::Campaign& campaign) {
+  const v1::Campaign own = campaign_of(screening, "");
+  const std::size_t count = accepted_candidates(screening.table).size();
+  v1::AppendCandidatesRequest out;
+  std::set<std::string> stated;
+  if (!screening.table.parameters.empty()) {
+    *out.mutable_candidate_columns() = own.candidate_columns();
+    for (const v1::CandidateColumn& each : own.candidate_columns()) stated.insert(each.path());
+  }
+  for (const v1::CandidateColumn& each : campaign.candidate_columns()) {
+    const FieldDescriptor* field = find_parameter_path(each.path());
+    if (stated.contains(each.path()) || field == nullptr) continue;
+    v1::CandidateColumn& column = *out.add_candidate_columns();
+    column.set_path(each.path());
+    const double value = base_value(screening.bases, *field);
+    for (std::size_t i = 0; i < count; ++i) column.add_values(value);
+  }
+  const auto& known = campaign.candidate_attributes();
+  const bool has_names = std::any_of(known.begin(), known.end(),
+                                     [](const auto& each) { return each.name() == kNames; });
+  for (const v1::CandidateAttribute& each : own.candidate_attributes()) {
+    if (each.name() != kNames || has_names) *out.add_candidate_attributes() = each;
+  }
   return out;
 }
 

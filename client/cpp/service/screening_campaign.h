@@ -12,9 +12,17 @@ namespace tribodyn::client {
 /// Returns the indices of the candidates without a refusal: those of the campaign, in its order.
 std::vector<std::size_t> accepted_candidates(const CandidateTable& table);
 
+/// Returns the campaign with the conditions and the base of a screening, without candidates.
+v1::Campaign campaign_without_candidates(const Screening& screening, const std::string& title);
+
 /// Returns the campaign that computes the candidates without a refusal, in their order. It keeps
 /// the candidates' names, carried columns and uncertainties as attributes.
 v1::Campaign campaign_of(const Screening& screening, const std::string& title);
+
+/// Returns the request that adds the candidates of a screening to a campaign. A parameter of the
+/// campaign that they do not state is as in the base; names go along if the campaign has names.
+v1::AppendCandidatesRequest further_candidates(const Screening& screening,
+                                               const v1::Campaign& campaign);
 
 /// Returns the id under which a campaign is created, e.g. "screen-3f1c...": a hash of the campaign
 /// and of the version of the model, so that the same screening finds the campaign that it made.

@@ -245,3 +245,69 @@ def test_a_campaign_decides_between_its_candidates(client):
         campaign.ranking("mesh_loss_power_watt")
     with pytest.raises(tribodyn.TribodynError, match="is not COLUMN"):
         campaign.ranking("mesh_loss_power_watts:median")
+
+
+def test_the_server_makes_candidates_and_finds_lubricants(client):
+    design = tribodyn.Design(
+        "latin-hypercube",
+        count=16,
+        seed=4,
+        ranges={"surface.asperity_friction_coefficient": (0.05, 0.12)},
+        logarithmic_ranges={"lubricant.relaxation_time": ("100 ns", "400 ns")},
+    )
+    campaign = client.screen(design, FLUID, labels={"series": "design"})
+    campaign.wait()
+    points = campaign.frame()
+    friction = points["surface.asperity_friction_coefficient"]
+    assert len(points) == 16 and friction.min() >= 0.05 and friction.max() <= 0.12
+    assert points["lubricant.relaxation_time_seconds"].between(1e-7, 4e-7).all()
+    assert campaign.message.candidate_design.algorithm_version == 1
+    assert client.screen(design, FLUID, labels={"series": "design"}).name == campaign.name
+    oils = client.screen(tribodyn.Lubricants(["paper-fluid-2", "paper-fluid-3"]))
+    oils.wait()
+    assert oils.message.lubricant_revision == "lubricants/paper-fluid-2@1"
+    before = oils.frame()["mesh_loss_power_watts"]
+    alone = client.evaluate(
+        {"lubricant": ["paper-fluid-2", "paper-fluid-3"]}, speed_kilometres_per_hour=60
+    )
+    assert list(before) == list(alone["mesh_loss_power_watts"])
+    oils.append(lubricants=["paper-fluid-1"])
+    oils.wait()
+    after = oils.frame(["candidate", "mesh_loss_power_watts", "name"])
+    assert list(after["candidate"]) == [0, 1, 2]
+    assert list(after["mesh_loss_power_watts"][:2]) == list(before)
+    found = client.screen(tribodyn.Lubricants(filter="name = paper-fluid-3"))
+    found.wait()
+    assert list(found.frame()["mesh_loss_power_watts"]) == list(before[1:])
+    with pytest.raises(tribodyn.TribodynError, match="is missing; only of Lubricants"):
+        client.screen(design)
+
+
+def test_candidates_are_added_and_rows_are_filtered(client):
+    campaign = client.screen(variants(10), FLUID, speeds_kilometres_per_hour=[40, 80])
+    campaign.wait()
+    before = campaign.frame()
+    campaign.append(variants(6).assign(name=[f"w{i}" for i in range(6)]), request_id="more")
+    campaign.append(variants(6).assign(name=[f"w{i}" for i in range(6)]), request_id="more")
+    campaign.wait()
+    after = campaign.frame()
+    assert len(after) == 32 and list(after["name"][20::2]) == [f"w{i}" for i in range(6)]
+    assert list(after[FIGURE][:20]) == list(before[FIGURE])
+    limit = float(np.median(after[FIGURE]))
+    few = campaign.frame(["row", "name", FIGURE], filter=f"{FIGURE} < {limit!r} AND condition = 1")
+    expected = after[(after[FIGURE] < limit) & (after["speed_kilometres_per_hour"] == 80)]
+    assert list(few["row"]) == list(expected.index) and list(few["name"]) == list(expected["name"])
+    assert list(few[FIGURE]) == list(expected[FIGURE])
+    assert len(campaign.frame(filter="refusal_number > 0")) == 0
+    with pytest.raises(tribodyn.TribodynError, match="is no column of the campaign"):
+        campaign.append({"lubricant.havriliak_negami_alpha": [0.8]})
+
+
+def test_campaigns_are_found_by_label(client):
+    campaign = client.screen(variants(2), FLUID, labels={"series": "found by label"})
+    campaign.update(display_name="Labelled")
+    assert campaign.message.display_name == "Labelled"
+    names = [each.name for each in client.campaigns(filter='labels.series = "found by label"')]
+    assert names == [campaign.name]
+    campaign.update(labels={})
+    assert client.campaigns(filter='labels.series = "found by label"') == []

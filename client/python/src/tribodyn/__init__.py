@@ -7,6 +7,7 @@
 ``tribodyn.aio.Client`` has the same methods as coroutines. ``tribodyn.v1`` holds the messages.
 """
 
+from tribodyn._candidates import Design, Lubricants
 from tribodyn._frames import Table
 from tribodyn._profiles import Profile
 from tribodyn._studies import Options
@@ -17,6 +18,8 @@ from tribodyn.units import Quantity, QuantityError, quantity
 __all__ = [
     "Campaign",
     "Client",
+    "Design",
+    "Lubricants",
     "Options",
     "Profile",
     "Quantity",

@@ -5,16 +5,18 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import re
-from typing import Any, AsyncGenerator, Mapping, Sequence
+from typing import Any, AsyncGenerator, Container, Mapping, Sequence
 
 import numpy as np
 
+from tribodyn._candidates import Design, Lubricants
 from tribodyn._columns import read_columns
+from tribodyn._csv import table_rows
 from tribodyn._evaluate import CONDITION, Extras, parameter_path, read_varied
 from tribodyn._frames import Frame, enum_word, frame
 from tribodyn._progress import Progress
 from tribodyn._studies import Arguments, full_name, set_switches
-from tribodyn._transport import Backoff, Transport
+from tribodyn._transport import Backoff, Transport, new_request_id
 from tribodyn.errors import TribodynError
 from tribodyn.units import Quantity
 from tribodyn.v1 import campaigns_pb2 as pb
@@ -80,7 +82,12 @@ class AsyncCampaign:
                 start_row += count
 
     async def frame(
-        self, columns: Sequence[str] = (), *, start_row: int = 0, row_count: int = 0
+        self,
+        columns: Sequence[str] = (),
+        *,
+        start_row: int = 0,
+        row_count: int = 0,
+        filter: str = "",
     ) -> Frame:
         details = await self._full()
         own = _OwnColumns(details)
@@ -88,25 +95,32 @@ class AsyncCampaign:
         figures = Extras.of(details).columns()
         names = names or [*own.names(), *figures, *_STATUS]
         arguments = Arguments()
-        known = {*own.names(), *figures, *_STATUS, "candidate", "condition"}
+        known = {*own.names(), *figures, *_STATUS, "candidate", "condition", "row"}
         for name in names:
             if name not in known:
                 arguments.wrong("columns", f"{name} is no column of {self.name}")
         arguments.check()
-        stored = [name for name in names if name in figures] + ["refusal_number"]
+        stored = [name for name in names if name in figures] + ["refusal_number", "row"]
         schema, values = await read_columns(
             self._transport,
             _SERVICE,
             "ReadCampaign",
             pb.ReadCampaignRequest(
-                name=self.name, columns=stored, start_row=start_row, row_count=row_count
+                name=self.name,
+                columns=stored,
+                start_row=start_row,
+                row_count=row_count,
+                filter=filter,
             ),
         )
         read = dict(zip(stored, values))
+        if (await self._candidates_to(schema.total_rows)) is not details:
+            own = _OwnColumns(await self._full())
         cells = {name: _tight(name, each) for name, each in read.items()}
         if any(name in _STATUS for name in names):
             cells |= await self._status(read["refusal_number"].astype(int))
-        rows = np.arange(schema.start_row, schema.start_row + schema.row_count)
+        rows = read["row"].astype(int)
+        cells["row"] = rows
         out = {name: cells[name] if name in cells else own.column(name, rows) for name in names}
         return frame(out, {**self._attrs(), "start_row": schema.start_row})
 
@@ -257,16 +271,71 @@ class AsyncCampaign:
             self._details = await self._get(pb.CAMPAIGN_VIEW_FULL)
         return self._details
 
+    async def _candidates_to(self, rows: int) -> pb.Campaign:
+        """Returns the campaign with the candidates of all rows: others may have been added."""
+        details = await self._full()
+        if rows > details.candidates * len(details.conditions):
+            self._details = None
+        return await self._full()
+
     async def _of_candidates(
         self, candidates: Sequence[int], cells: Mapping[str, Any], attrs: Mapping[str, Any]
     ) -> Frame:
         """Returns a table of candidates: what they were created with, their numbers and `cells`."""
         details = await self._full()
+        count = max(candidates, default=-1) + 1
+        details = await self._candidates_to(count * len(details.conditions))
         own = _OwnColumns(details)
         rows = np.array(candidates, dtype=int) * len(details.conditions)
         out = {name: own.column(name, rows) for name in own.of_candidates()}
         out["candidate"] = np.array(candidates, dtype=int)
         return frame({**out, **cells}, {**self._attrs(), **attrs})
+
+    async def append(
+        self,
+        table: Any = None,
+        *,
+        lubricants: Sequence[str] = (),
+        request_id: str | None = None,
+    ) -> None:
+        request = pb.AppendCandidatesRequest(
+            name=self.name, request_id=request_id or new_request_id()
+        )
+        request.candidate_lubricants.extend(full_name("lubricants", each) for each in lubricants)
+        if table is not None:
+            rows = table_rows(table)
+            arguments = Arguments()
+            candidates = [read_varied(arguments, row) for row in rows]
+            arguments.check()
+            details = await self._full()
+            part = pb.Campaign(
+                lubricant=details.lubricant_revision, surface=details.surface_revision
+            )
+            # What a table leaves out is as in the base.
+            paths = dict.fromkeys(each.path for each in details.candidate_columns)
+            await _add_candidates(self._transport, part, candidates, list(paths))
+            texts = {each.name for each in details.candidate_attributes if each.texts}
+            _add_attributes(part, rows, texts)
+            request.candidate_columns.extend(part.candidate_columns)
+            request.candidate_attributes.extend(part.candidate_attributes)
+        self.message = await self._transport.call(
+            _SERVICE, "AppendCandidates", request, patient=True
+        )
+        self._details = None
+
+    async def update(
+        self, *, display_name: str | None = None, labels: Mapping[str, str] | None = None
+    ) -> None:
+        request = pb.UpdateCampaignRequest(campaign=pb.Campaign(name=self.name))
+        if display_name is not None:
+            request.campaign.display_name = display_name
+            request.update_mask.paths.append("display_name")
+        if labels is not None:
+            for key, value in labels.items():
+                request.campaign.labels.add(key=key, value=value)
+            request.update_mask.paths.append("labels")
+        if request.update_mask.paths:
+            await self._change("UpdateCampaign", request)
 
     async def pause(self) -> None:
         await self._change("PauseCampaign", pb.PauseCampaignRequest(name=self.name))
@@ -463,7 +532,7 @@ def _tight(name: str, values: np.ndarray) -> np.ndarray:
 async def start_campaign(
     transport: Transport,
     progress_form: str,
-    rows: Sequence[Mapping[str, Any]],
+    table: Any,
     *,
     base: Mapping[str, str | None],
     speeds: Sequence[Quantity],
@@ -480,6 +549,7 @@ async def start_campaign(
     budget_points: int | None,
     budget_processor_seconds: float | None,
     display_name: str,
+    labels: Mapping[str, str],
     request_id: str | None,
 ) -> AsyncCampaign:
     """Creates a campaign, or finds the one that an equal call made, and resumes it if it is
@@ -496,14 +566,25 @@ async def start_campaign(
                 if value is not None:
                     setattr(condition, name, arguments.number(name, value))
     _set_weights(arguments, campaign, (speeds, speed_weights), (sumps, sump_weights))
+    is_made = isinstance(table, (Design, Lubricants))
+    rows = [] if is_made else table_rows(table)
+    if is_made:
+        table.set(arguments, campaign)
     candidates = [read_varied(arguments, row) for row in rows]
+    if not base["lubricant"] and not isinstance(table, Lubricants):
+        arguments.wrong("lubricant", "is missing; only of Lubricants the first one is the base")
     arguments.check()
+    found = await _found_lubricants(transport, campaign)
     # Names become revisions, so that a later call after a change of one is another campaign.
-    model_version = await _pin(transport, campaign, base)
+    first = {"lubricant": base["lubricant"] or next(iter(found), "")}
+    model_version = await _pin(transport, campaign, {**base, **first})
     await _add_candidates(transport, campaign, candidates)
     _add_attributes(campaign, rows)
+    for key, value in labels.items():
+        campaign.labels.add(key=key, value=value)
     if request_id is None:
         inputs = campaign.SerializeToString(deterministic=True) + model_version.encode()
+        inputs += "".join(found).encode()
         request_id = "screen-" + hashlib.sha256(inputs).hexdigest()[:32]
     request = pb.CreateCampaignRequest(campaign=campaign, request_id=request_id)
     out = AsyncCampaign(
@@ -544,6 +625,28 @@ def _set_weights(
         campaign.condition_weights.extend(float(a) * float(b) for a in of_sumps for b in of_speeds)
 
 
+async def _found_lubricants(transport: Transport, campaign: pb.Campaign) -> list[str]:
+    """Replaces lubricants that are candidates by their revisions. Returns these, or those that
+    satisfy the filter."""
+    names = list(campaign.candidate_lubricants)
+    for i, name in enumerate(names):
+        get = lubricants_pb2.GetLubricantRequest(name=name)
+        lubricant = await transport.call("LubricantService", "GetLubricant", get)
+        names[i] = f"{name.partition('@')[0]}@{lubricant.revision}"
+    campaign.candidate_lubricants[:] = names
+    if not campaign.lubricant_filter:
+        return names
+    request = lubricants_pb2.ListLubricantsRequest(
+        filter=campaign.lubricant_filter, page_size=1000, read_mask={"paths": ["name", "revision"]}
+    )
+    while True:
+        page = await transport.call("LubricantService", "ListLubricants", request)
+        names += [f"{each.name}@{each.revision}" for each in page.lubricants]
+        request.page_token = page.next_page_token
+        if not request.page_token:
+            return names
+
+
 async def _pin(transport: Transport, campaign: pb.Campaign, base: Mapping[str, str | None]) -> str:
     """Sets the revisions of the base, and returns the version of the model."""
     request = points_pb2.EvaluatePointsRequest(
@@ -562,10 +665,14 @@ async def _pin(transport: Transport, campaign: pb.Campaign, base: Mapping[str, s
 
 
 async def _add_candidates(
-    transport: Transport, campaign: pb.Campaign, candidates: Sequence[Mapping[str, float]]
+    transport: Transport,
+    campaign: pb.Campaign,
+    candidates: Sequence[Mapping[str, float]],
+    paths: Sequence[str] = (),
 ) -> None:
-    """Adds a column for each parameter; a candidate that states none has that of the base."""
-    for path in dict.fromkeys(path for each in candidates for path in each):
+    """Adds a column for each parameter, `paths` among them; a candidate that states none has that of
+    the base."""
+    for path in dict.fromkeys([*paths, *(path for each in candidates for path in each)]):
         values = [each.get(path) for each in candidates]
         if None in values:
             owner, _, field = path.partition(".")
@@ -576,15 +683,18 @@ async def _add_candidates(
         campaign.candidate_columns.add(path=path, values=values)
 
 
-def _add_attributes(campaign: pb.Campaign, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Adds the columns of the table that are no parameters."""
+def _add_attributes(
+    campaign: pb.Campaign, rows: Sequence[Mapping[str, Any]], texts: Container[str] = ()
+) -> None:
+    """Adds the columns of the table that are no parameters; those in `texts` hold texts."""
     columns = dict.fromkeys(name for row in rows for name in row)
     for name in columns:
         if name.partition(".")[0] in _GETTERS and "." in name:
             continue
         attribute = campaign.candidate_attributes.add(name=re.sub(r"[^A-Za-z0-9._-]", "_", name))
         values = [row.get(name) for row in rows]
-        if all(isinstance(each, (int, float)) and np.isfinite(each) for each in values):
+        is_number = all(isinstance(each, (int, float)) and np.isfinite(each) for each in values)
+        if is_number and attribute.name not in texts:
             attribute.values.extend(float(each) for each in values if each is not None)
         else:
             attribute.texts.extend("" if each is None else str(each) for each in values)

@@ -25,9 +25,10 @@ async def read_columns(
     backoff, tries_left = Backoff(), _READ_RETRIES
     while True:
         # Whole columns arrive in turns; a resumed stream begins at the first row that is missing in
-        # any of them. The buckets of an envelope depend on its first row: it is read again.
+        # any of them. The buckets of an envelope depend on its first row, and what a filter leaves
+        # has no numbers: either is read again.
         done = min((sum(map(len, part)) for part in parts), default=0)
-        if schema is None or schema.rows_per_pair > 0:
+        if schema is None or schema.rows_per_pair > 0 or getattr(request, "filter", ""):
             schema, done = None, 0
         parts = [_first(part, done) for part in parts] if schema else []
         request.start_row = start_row + done

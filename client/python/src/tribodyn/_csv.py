@@ -26,6 +26,13 @@ def rows_of(table: Any) -> list[dict[str, Any]]:
     return [{name: values[i] for name, values in columns.items()} for i in range(count)]
 
 
+def table_rows(table: Any) -> list[dict[str, Any]]:
+    """Returns the rows of a table, without empty cells."""
+    return [
+        {name: value for name, value in row.items() if value is not None} for row in rows_of(table)
+    ]
+
+
 def _read_csv(path: Path) -> list[dict[str, Any]]:
     lines = [
         line

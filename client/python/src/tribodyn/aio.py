@@ -583,7 +583,7 @@ class Client:
     async def screen(
         self,
         table: Any,
-        lubricant: str,
+        lubricant: str | None = None,
         *,
         speeds_kilometres_per_hour: Sequence[Quantity] = (60,),
         sump_temperatures_celsius: Sequence[Quantity] = (40,),
@@ -602,13 +602,13 @@ class Client:
         budget_points: int | None = None,
         budget_processor_seconds: float | None = None,
         display_name: str = "",
+        labels: Mapping[str, str] | None = None,
         request_id: str | None = None,
     ) -> AsyncCampaign:
-        _, rows = _rows(table, {}, lambda name: True)
         return await start_campaign(
             self._transport,
             self._settings.progress,
-            rows,
+            table,
             base={
                 "lubricant": lubricant,
                 "gear_set": gear_set,
@@ -629,6 +629,7 @@ class Client:
             budget_points=budget_points,
             budget_processor_seconds=budget_processor_seconds,
             display_name=display_name,
+            labels=labels or {},
             request_id=request_id,
         )
 
@@ -641,9 +642,11 @@ class Client:
         await campaign.refresh()
         return campaign
 
-    async def campaigns(self, limit: int | None = None) -> list[AsyncCampaign]:
+    async def campaigns(
+        self, limit: int | None = None, *, filter: str = ""
+    ) -> list[AsyncCampaign]:
         found: list[Campaign] = []
-        request = ListCampaignsRequest(page_size=min(limit or 1000, 1000))
+        request = ListCampaignsRequest(page_size=min(limit or 1000, 1000), filter=filter)
         while True:
             page = await self._transport.call("CampaignService", "ListCampaigns", request)
             found += page.campaigns

@@ -209,12 +209,44 @@ class Campaign:
             _LOOP.run(close())
 
     def frame(
-        self, columns: Sequence[str] = (), *, start_row: int = 0, row_count: int = 0
+        self,
+        columns: Sequence[str] = (),
+        *,
+        start_row: int = 0,
+        row_count: int = 0,
+        filter: str = "",
     ) -> Frame:
         """Returns rows as a table, finished or not; ``row_count`` 0: to the end. ``columns``: what
-        the candidates were created with, "candidate" and "condition" (numbers from 0), the fields of
-        conditions, figures, "status" and "status_message"; empty: all but the two numbers."""
-        return _LOOP.run(self._campaign.frame(columns, start_row=start_row, row_count=row_count))
+        the candidates were created with, "candidate", "condition" and "row" (numbers from 0), the
+        fields of conditions, figures, "status" and "status_message"; empty: all but the three
+        numbers. ``filter``: only rows of the range that satisfy all its conditions, e.g.
+        "refusal_number > 0" (rows without figures) or "film_ratio_minimum < 1 AND additive = ZDDP";
+        the server reads it, so that columns have its names, e.g. "lubricant.FIELD"."""
+        return _LOOP.run(
+            self._campaign.frame(
+                columns, start_row=start_row, row_count=row_count, filter=filter
+            )
+        )
+
+    def append(
+        self,
+        table: Any = None,
+        *,
+        lubricants: Sequence[str] = (),
+        request_id: str | None = None,
+    ) -> None:
+        """Adds candidates behind the last one: rows of a table as of Client.screen(), or, where the
+        candidates are lubricants, the names of others. What is computed stays; a campaign that has
+        succeeded runs again. Parameters of the campaign that the table leaves out are as in the base;
+        a parameter or another column that the campaign lacks is refused. A call with the
+        ``request_id`` of an earlier one adds nothing more; None: every call adds."""
+        _LOOP.run(self._campaign.append(table, lubricants=lubricants, request_id=request_id))
+
+    def update(
+        self, *, display_name: str | None = None, labels: Mapping[str, str] | None = None
+    ) -> None:
+        """Changes the display name, or replaces the labels; None: they stay."""
+        _LOOP.run(self._campaign.update(display_name=display_name, labels=labels))
 
     def ranking(
         self,
@@ -996,7 +1028,7 @@ class Client:
     def screen(
         self,
         table: Any,
-        lubricant: str,
+        lubricant: str | None = None,
         *,
         speeds_kilometres_per_hour: Sequence[Quantity] = (60,),
         sump_temperatures_celsius: Sequence[Quantity] = (40,),
@@ -1015,6 +1047,7 @@ class Client:
         budget_points: int | None = None,
         budget_processor_seconds: float | None = None,
         display_name: str = "",
+        labels: Mapping[str, str] | None = None,
         request_id: str | None = None,
     ) -> Campaign:
         """Screens candidates, one a row, at every speed and sump temperature, and returns the
@@ -1027,6 +1060,11 @@ class Client:
         names beyond letters, digits, "-", "_" and "." become "_". Weights, one for each speed and
         sump temperature and above 0, are those of ranking(); None: equal. ``contact_figures`` and
         ``elasticities`` as of evaluate().
+
+        ``table`` may also be a Design, which the server makes, or Lubricants, each of which is a
+        candidate; of these the first one is the base if ``lubricant`` is None. Candidates that are
+        lubricants have the columns "name" and their parameters. ``labels``: campaigns() filters by
+        them.
 
         The same call again finds its campaign by a request id that is a hash of all that decides its
         figures, goes on if it is paused, and computes nothing twice; ``request_id`` states another
@@ -1055,6 +1093,7 @@ class Client:
                     budget_points=budget_points,
                     budget_processor_seconds=budget_processor_seconds,
                     display_name=display_name,
+                    labels=labels,
                     request_id=request_id,
                 )
             )
@@ -1064,6 +1103,10 @@ class Client:
         """Returns a campaign, e.g. "12" or "campaigns/12"."""
         return Campaign(_LOOP.run(self._client.campaign(name)))
 
-    def campaigns(self, limit: int | None = None) -> List[Campaign]:
-        """Returns campaigns, newest first; at most ``limit``."""
-        return [Campaign(each) for each in _LOOP.run(self._client.campaigns(limit))]
+    def campaigns(self, limit: int | None = None, *, filter: str = "") -> List[Campaign]:
+        """Returns campaigns, newest first; at most ``limit``. ``filter``: e.g. "labels.project = axle
+        AND state = RUNNING"; fields are labels.KEY, display_name, state, lubricant, gear_set,
+        surface and vehicle."""
+        return [
+            Campaign(each) for each in _LOOP.run(self._client.campaigns(limit, filter=filter))
+        ]

@@ -144,6 +144,10 @@ struct CampaignRowsOptions {
   std::vector<std::string> columns = {};  ///< empty: refusal_number and all figures
   std::int64_t start_row = 0;
   std::int64_t row_count = 0;  ///< 0: to the end
+  /// Only rows that satisfy all conditions, e.g. "refusal_number > 0" or "film_ratio_minimum < 1
+  /// AND additive = ZDDP". HistoryRows::first_row then counts these rows alone; the column "row"
+  /// has their numbers.
+  std::string filter = {};
 };
 
 /// Consecutive rows: for each column of the schema its values, equally many.
@@ -260,8 +264,15 @@ class Connection {
                                const CreateCampaignOptions& options = {});
   v1::Campaign get_campaign(const std::string& name,
                             v1::CampaignView view = v1::CAMPAIGN_VIEW_BASIC);
-  /// Lists campaigns, newest first; of the options it takes limit and page_token.
+  /// Lists campaigns, newest first; of the options it takes filter, limit and page_token.
   Listing<v1::Campaign> list_campaigns(const ListOptions& options = {});
+  /// Changes the display name or the labels of a campaign, whatever its state. `update_mask`:
+  /// "display_name", "labels"; empty: those of the two that the campaign populates; {"*"}: both.
+  v1::Campaign update_campaign(const v1::Campaign& campaign,
+                               const std::vector<std::string>& update_mask = {});
+  /// Adds candidates to a campaign. A request without a request_id gets a random one, so that the
+  /// call adds them once even if the server is lost meanwhile.
+  v1::Campaign append_candidates(v1::AppendCandidatesRequest request);
   v1::Campaign pause_campaign(const std::string& name);
   /// Resumes a campaign that is paused, and sets its budget if there is one here.
   v1::Campaign resume_campaign(const std::string& name,
@@ -277,7 +288,7 @@ class Connection {
                                const std::stop_token& stop = {});
   /// Calls `on_rows` in the calling thread for rows as they arrive, once and in order. Rows that
   /// are not computed yet are NaN, and -1 in refusal_number. Resumes a broken stream at the first
-  /// missing row, for a limited time.
+  /// missing row, for a limited time; one with a filter fails.
   void stream_campaign(const std::string& name, const CampaignRowsOptions& options,
                        const std::function<void(const v1::HistorySchema&)>& on_schema,
                        const std::function<void(const HistoryRows&)>& on_rows);

@@ -1,0 +1,93 @@
+"""Candidates of a campaign that the server makes or finds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Mapping, Sequence
+
+from tribodyn._evaluate import parameter_path, read_varied
+from tribodyn._studies import Arguments, full_name
+from tribodyn.units import Quantity
+from tribodyn.v1 import campaigns_pb2 as pb
+
+_METHODS = {
+    "grid": pb.CandidateDesign.GRID,
+    "latin-hypercube": pb.CandidateDesign.LATIN_HYPERCUBE,
+    "sobol": pb.CandidateDesign.SOBOL,
+}
+
+
+@dataclass(frozen=True)
+class Design:
+    """A design of experiments that the server makes: candidates that fill ranges of parameters, or
+    that spread as the standard uncertainties of the lubricant say. Equal designs over equal bases
+    have equal candidates, to the last bit."""
+
+    method: str = "sobol"  #: "sobol", "latin-hypercube" or "grid"
+    count: int = 0  #: candidates, 1 to 100,000; a grid has none: its levels decide
+    seed: int = 0  #: begin of the random numbers; a grid has none
+    #: parameters ("lubricant.FIELD" or "surface.FIELD") and their (lowest, highest) values, in equal
+    #: differences
+    ranges: Mapping[str, tuple[Quantity, Quantity]] = field(default_factory=dict)
+    #: the same in equal ratios
+    logarithmic_ranges: Mapping[str, tuple[Quantity, Quantity]] = field(default_factory=dict)
+    #: parameters that spread by their standard uncertainty. Without these and without ranges: all
+    #: parameters for which the lubricant or the surface states one
+    uncertain: Sequence[str] = ()
+    #: of a grid: the number of levels of each range, or by parameter
+    levels: int | Mapping[str, int] = 0
+
+    def set(self, arguments: Arguments, campaign: pb.Campaign) -> None:
+        """Writes the design to a request."""
+        design = campaign.candidate_design
+        if self.method not in _METHODS:
+            arguments.wrong("method", f"{self.method} is none of {', '.join(_METHODS)}")
+        design.method = _METHODS.get(self.method, pb.CandidateDesign.SOBOL)
+        design.count, design.seed = self.count, self.seed
+        scales = (
+            (self.ranges, pb.DesignFactor.LINEAR),
+            (self.logarithmic_ranges, pb.DesignFactor.LOGARITHMIC),
+        )
+        for ranges, scale in scales:
+            for name, limits in ranges.items():
+                self._add_range(arguments, design, name, limits, scale)
+        for name in self.uncertain:
+            design.factors.add(parameter=parameter_path(arguments, "uncertain", name))
+
+    def _add_range(
+        self,
+        arguments: Arguments,
+        design: pb.CandidateDesign,
+        name: str,
+        limits: tuple[Quantity, Quantity],
+        scale: Any,
+    ) -> None:
+        if not isinstance(limits, (tuple, list)) or len(limits) != 2:
+            arguments.wrong("ranges", f"{name}: {limits!r} is not (lowest, highest)")
+            return
+        ends = [read_varied(arguments, {name: limit}) for limit in limits]
+        if not all(ends):
+            return
+        levels = self.levels if isinstance(self.levels, int) else self.levels.get(name, 0)
+        (path,) = ends[0]
+        design.factors.add(
+            parameter=path,
+            minimum=ends[0][path],
+            maximum=ends[1][path],
+            scale=scale,
+            levels=levels,
+        )
+
+
+@dataclass(frozen=True)
+class Lubricants:
+    """Lubricants that are candidates: by their names, or all that satisfy a filter when the campaign
+    is created. All have one law of viscosity under pressure."""
+
+    names: Sequence[str] = ()  #: e.g. "my-oil" or "my-oil@2"
+    filter: str = ""  #: as of client.lubricants.list(), e.g. "labels.series = b"
+
+    def set(self, _: Arguments, campaign: pb.Campaign) -> None:
+        """Writes the lubricants to a request."""
+        campaign.candidate_lubricants.extend(full_name("lubricants", name) for name in self.names)
+        campaign.lubricant_filter = self.filter
