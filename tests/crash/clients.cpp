@@ -28,20 +28,6 @@ SeenEvent seen(const v1::SimulationEvent& event) {
   return {event.sequence(), event.state(), event.attempt()};
 }
 
-/// Returns true if the server refuses the request itself. Returns false if the server is dead, slow
-/// or busy, so that the same request may succeed later.
-bool is_refusal(const client::ServiceError& error) {
-  switch (error.status_code()) {
-    case grpc::StatusCode::DEADLINE_EXCEEDED:
-    case grpc::StatusCode::RESOURCE_EXHAUSTED:
-    case grpc::StatusCode::ABORTED:
-    case grpc::StatusCode::UNAVAILABLE:
-      return false;
-    default:
-      return error.kind() == client::ServiceError::Kind::kRefused;
-  }
-}
-
 void set_study(int number, v1::Simulation& out) {
   if (number % 5 == 4) {
     auto* curve = out.mutable_inefficiency_curve();
@@ -82,6 +68,18 @@ v1::Lubricant lubricant_of(const std::string& name, int content) {
 }
 
 }  // namespace
+
+bool is_refusal(const client::ServiceError& error) {
+  switch (error.status_code()) {
+    case grpc::StatusCode::DEADLINE_EXCEEDED:
+    case grpc::StatusCode::RESOURCE_EXHAUSTED:
+    case grpc::StatusCode::ABORTED:
+    case grpc::StatusCode::UNAVAILABLE:
+      return false;
+    default:
+      return error.kind() == client::ServiceError::Kind::kRefused;
+  }
+}
 
 v1::Simulation simulation_of(const std::string& scene) {
   const int number = std::stoi(scene) / 2;

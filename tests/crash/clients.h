@@ -26,6 +26,10 @@ std::string history_bytes(client::Connection& connection, const v1::Simulation& 
 v1::Simulation follow(client::Connection& connection, const std::string& name,
                       std::chrono::milliseconds patience, std::vector<SeenEvent>& events);
 
+/// Returns true if the server refuses the request itself. Returns false if the server is dead, slow
+/// or busy, so that the same request may succeed later.
+bool is_refusal(const client::ServiceError& error);
+
 /// One client. At random it submits, submits again under the same request_id, watches, cancels,
 /// reads, updates a lubricant and creates batches of lubricants, and records the answers.
 class Client {

@@ -11,12 +11,16 @@
 #include <thread>
 #include <utility>
 
+#include "tests/crash/campaign_client.h"
+
 namespace tribodyn::crash {
 namespace {
 
 using server::ServerProcess;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
+
+constexpr int kClientsOfACampaignClient = 4;
 
 /// TRIBODYN_TEST_SEED repeats the draws of an earlier run, though not its timing.
 std::uint64_t seed_of_run() {
@@ -66,6 +70,12 @@ void CrashRun::crash_under_load(int clients, int crashes) {
       Client(address(), i, seed, recorder_).run(stop, crashed);
     });
   }
+  for (int i = 0; i < clients / kClientsOfACampaignClient; ++i) {
+    threads.emplace_back([this, &stop, &crashed, i] {
+      CampaignClient(address(), i, seed_ + static_cast<std::uint64_t>(i), recorder_)
+          .run(stop, crashed);
+    });
+  }
   while (crashed < crashes && !testing::Test::HasFatalFailure()) {
     std::this_thread::sleep_for(milliseconds(50 + random() % 600));
     kill_server();
@@ -104,9 +114,40 @@ void CrashRun::wait_for_ends(client::Connection& connection) const {
   }
 }
 
+void CrashRun::wait_for_campaigns(client::Connection& connection) const {
+  std::map<std::string, std::pair<int, int>> states;
+  auto changed = steady_clock::now();
+  while (steady_clock::now() - changed < patience_) {
+    std::map<std::string, std::pair<int, int>> now;
+    bool is_over = true;
+    for (const auto& each : connection.list_campaigns().resources) {
+      now[each.name()] = {each.state(), each.points_done()};
+      is_over = is_over && client::has_ended(each.state());
+    }
+    if (is_over) return;
+    if (now != states) changed = steady_clock::now();
+    states = std::move(now);
+    std::this_thread::sleep_for(milliseconds(20));
+  }
+}
+
+void CrashRun::read_campaigns(client::Connection& connection) {
+  CampaignHistory& history = recorder_.finished().campaigns;
+  for (const auto& each : connection.list_campaigns().resources) {
+    history.found[each.name()] = each;
+    if (each.state() == v1::Campaign::PAUSED) connection.resume_campaign(each.name());
+  }
+  wait_for_campaigns(connection);
+  for (const auto& [name, campaign] : history.found) {
+    history.campaigns[name] = connection.get_campaign(name, v1::CAMPAIGN_VIEW_FULL);
+    history.rows[name] = computed_rows(connection, name);
+  }
+}
+
 void CrashRun::read_everything() {
   History& history = recorder_.finished();
   client::Connection connection(address());
+  read_campaigns(connection);
   wait_for_ends(connection);
   for (const auto& each : connection.list_simulations().resources) {
     const milliseconds patience = client::has_ended(each.state()) ? patience_ : milliseconds(300);
@@ -138,6 +179,14 @@ void CrashRun::compute_undisturbed() {
   for (const auto& [scene, name] : names) {
     const v1::Simulation simulation = connection.wait_for_end(name);
     history.undisturbed[scene] = result_bits(simulation) + history_bytes(connection, simulation);
+  }
+  for (const auto& each : history.campaigns.made) {
+    auto& rows = history.campaigns.undisturbed[each.scene];
+    if (!rows.empty()) continue;
+    constexpr int kAll = kFirstCandidates + kMostAppends * kAppendedCandidates;
+    const std::string name = connection.create_campaign(campaign_of(each.scene, kAll)).name();
+    connection.follow_campaign(name);
+    rows = computed_rows(connection, name);
   }
 }
 

@@ -38,6 +38,8 @@ class CrashRun {
   void crash_under_load(int clients, int crashes);
   void read_everything();
   void wait_for_ends(client::Connection& connection) const;
+  void wait_for_campaigns(client::Connection& connection) const;
+  void read_campaigns(client::Connection& connection);
 
   const std::vector<std::string> command_;
   const std::chrono::milliseconds patience_;

@@ -49,6 +49,13 @@ TEST(CrashTest, NothingAcknowledgedIsLostHoweverOftenTheServerDies) {
   EXPECT_GT(history.simulations.size(), 20U);
   EXPECT_GT(ends[v1::Simulation::SUCCEEDED], 10);
   EXPECT_GT(repeated, 0) << "no crash met a simulation that ran";
+  const CampaignHistory& campaigns = history.campaigns;
+  RecordProperty("campaigns", static_cast<int>(campaigns.campaigns.size()));
+  RecordProperty("campaign_reads", static_cast<int>(campaigns.reads.size()));
+  RecordProperty("appends", static_cast<int>(campaigns.acknowledged_appends.size()));
+  EXPECT_GT(campaigns.campaigns.size(), 2U);
+  EXPECT_FALSE(campaigns.acknowledged_appends.empty());
+  EXPECT_FALSE(campaigns.reads.empty());
 }
 
 }  // namespace

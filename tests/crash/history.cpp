@@ -202,6 +202,9 @@ std::vector<std::string> violations(const History& history) {
   check_events(history, problems);
   check_revisions(history, problems);
   check_batches(history, problems);
+  for (std::string& each : campaign_violations(history.campaigns)) {
+    problems.push_back(std::move(each));
+  }
   return problems;
 }
 

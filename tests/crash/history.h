@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/crash/campaign_history.h"
 #include "tribodyn/v1/simulations.pb.h"
 
 namespace tribodyn::crash {
@@ -65,6 +66,8 @@ struct History {
   std::map<std::string, std::string> kept_revisions;  ///< contents by the revision's name
   /// result_bits() and history bytes of each scene from a server that was not killed.
   std::map<std::string, std::string> undisturbed;
+
+  CampaignHistory campaigns;
 };
 
 /// A history that several clients write. Safe for concurrent access.
@@ -99,7 +102,8 @@ std::string result_bits(const v1::Simulation& simulation);
 ///   server has every event that it sent to a client;
 /// - no client is refused anything;
 /// - an acknowledged revision of a resource exists with its content, no update makes two revisions,
-///   and of a batch all resources or none exist, of an acknowledged batch all.
+///   and of a batch all resources or none exist, of an acknowledged batch all;
+/// - those of campaign_violations().
 std::vector<std::string> violations(const History& history);
 
 }  // namespace tribodyn::crash

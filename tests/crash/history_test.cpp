@@ -41,12 +41,57 @@ void set_result(v1::Simulation& simulation, const std::string& hash, double spee
   simulation.mutable_result()->add_points()->set_speed_kilometres_per_hour(speed);
 }
 
+/// The bits of a row with one figure beside refusal_number.
+std::string bits_of_row(double figure) {
+  const double row[] = {0, figure};
+  return {reinterpret_cast<const char*>(row), sizeof row};
+}
+
+/// Adds a campaign of scene 4 at two conditions; one that has succeeded has all rows.
+void add_campaign(History& history, const std::string& name, v1::Campaign::State state,
+                  int candidates) {
+  CampaignHistory& campaigns = history.campaigns;
+  v1::Campaign& campaign = campaigns.campaigns[name];
+  campaign.set_name(name);
+  campaign.set_request_id("campaign-0-" + std::to_string(name.back() - '1'));
+  campaign.set_state(state);
+  campaign.set_candidates(candidates);
+  campaign.set_points(2 * candidates);
+  v1::CandidateColumn& column = *campaign.add_candidate_columns();
+  for (int i = 0; i < candidates; ++i) column.add_values(candidate_value(4, i));
+  if (state != v1::Campaign::SUCCEEDED) return;
+  campaign.set_points_done(campaign.points());
+  for (int i = 0; i < campaign.points(); ++i) campaigns.rows[name][i] = bits_of_row(0.5 * i);
+}
+
+/// Adds a campaign that was extended and read, one that was cancelled and one that was deleted.
+void add_campaigns(History& history) {
+  CampaignHistory& campaigns = history.campaigns;
+  add_campaign(history, "campaigns/1", v1::Campaign::SUCCEEDED,
+               kFirstCandidates + kAppendedCandidates);
+  add_campaign(history, "campaigns/2", v1::Campaign::CANCELLED, kFirstCandidates);
+  campaigns.requests = 3;
+  campaigns.found = campaigns.campaigns;
+  campaigns.made = {{"campaign-0-0", "campaigns/1", 4},
+                    {"campaign-0-0", "campaigns/1", 4},
+                    {"campaign-0-1", "campaigns/2", 4},
+                    {"campaign-0-2", "campaigns/3", 4}};
+  campaigns.sent_appends["campaigns/1"] = 2;
+  campaigns.acknowledged_appends["campaigns/1"] = 1;
+  campaigns.ended = {{"campaigns/2", v1::Campaign::CANCELLED}};
+  campaigns.sent_deletions = campaigns.deleted = {"campaigns/3"};
+  campaigns.reads = {{"campaigns/1", {{7, bits_of_row(3.5)}}},
+                     {"campaigns/3", {{1, bits_of_row(0.5)}}}};
+  for (int i = 0; i < 900; ++i) campaigns.undisturbed[4][i] = bits_of_row(0.5 * i);
+}
+
 /// Returns a history with everything that may happen without a fault: a simulation runs again after
 /// a crash, is served from the cache, is cancelled, fails after too many crashes or at its
 /// deadline, is requested twice, is never acknowledged; an update is not acknowledged; a batch has
 /// an effect or none.
 History faultless() {
   History history;
+  add_campaigns(history);
   const std::vector<SeenEvent> run_again = {
       {1, kQueued, 1}, {2, kRunning, 1}, {3, kQueued, 2}, {4, kRunning, 2}, {5, kSucceeded, 2}};
   set_result(add(history, "simulations/1", "0-0", run_again), "hash of 7", 65);
@@ -258,6 +303,65 @@ const std::vector<Fault> kFaults = {
      "of the acknowledged batch of lubricants/d 0 of 2 are there"},
     {"BatchIsKeptInPart", [](History& history) { history.kept_revisions["lubricants/e@1"] = "0"; },
      "of the batch of lubricants/d 1 of 2 are there"},
+    {"CampaignIsLost", [](History& history) { history.campaigns.campaigns.erase("campaigns/1"); },
+     "campaigns/1 was acknowledged and is lost"},
+    {"CampaignIsOfAnotherRequest",
+     [](History& history) {
+       history.campaigns.campaigns["campaigns/1"].set_request_id("campaign-0-9");
+     },
+     "campaigns/1 was acknowledged to request campaign-0-0 and belongs to request campaign-0-9"},
+    {"RequestMakesTwoCampaigns", [](History& history) { history.campaigns.requests = 1; },
+     "1 requests made 2 campaigns"},
+    {"DeletedCampaignIsThere",
+     [](History& history) {
+       add_campaign(history, "campaigns/3", v1::Campaign::SUCCEEDED, kFirstCandidates);
+       ++history.campaigns.requests;
+     },
+     "campaigns/3 was deleted and is there"},
+    {"CancelledCampaignSucceeds",
+     [](History& history) {
+       history.campaigns.ended.emplace_back("campaigns/1", v1::Campaign::CANCELLED);
+     },
+     "campaigns/1 had ended CANCELLED and is SUCCEEDED"},
+    {"PausedCampaignRuns",
+     [](History& history) {
+       history.campaigns.paused.insert("campaigns/1");
+       history.campaigns.found["campaigns/1"].set_state(v1::Campaign::RUNNING);
+     },
+     "campaigns/1 was paused and runs"},
+    {"CampaignNeverEnds",
+     [](History& history) {
+       history.campaigns.campaigns["campaigns/2"].set_state(v1::Campaign::RUNNING);
+       history.campaigns.ended.clear();
+     },
+     "campaigns/2 never ended: it is RUNNING with 0 rows"},
+    {"AppendedCandidatesAreLost",
+     [](History& history) { history.campaigns.acknowledged_appends["campaigns/2"] = 1; },
+     "campaigns/2 has 300 candidates after 1 to 0 appends"},
+    {"CandidatesAreAddedTwice",
+     [](History& history) { history.campaigns.sent_appends["campaigns/1"] = 0; },
+     "campaigns/1 has 400 candidates after 1 to 0 appends"},
+    {"CandidatesAreOthers",
+     [](History& history) {
+       history.campaigns.campaigns["campaigns/1"].mutable_candidate_columns(0)->set_values(7, 1);
+     },
+     "campaigns/1 has other candidates than it was sent"},
+    {"RowsAreCountedThatAreNotThere",
+     [](History& history) { history.campaigns.campaigns["campaigns/2"].set_points_done(4); },
+     "campaigns/2 counts 4 rows as computed and has 0"},
+    {"ReadRowIsLost",
+     [](History& history) {
+       history.campaigns.reads.push_back({"campaigns/2", {{5, bits_of_row(1)}}});
+     },
+     "campaigns/2: row 5 was read and is lost"},
+    {"ReadRowHasChanged",
+     [](History& history) {
+       history.campaigns.reads.push_back({"campaigns/1", {{5, bits_of_row(1)}}});
+     },
+     "campaigns/1: row 5 was read and has changed"},
+    {"RowHasOtherBits",
+     [](History& history) { history.campaigns.undisturbed[4][799] = bits_of_row(1); },
+     "campaigns/1: row 799 has other bits than in an undisturbed run"},
 };
 
 INSTANTIATE_TEST_SUITE_P(All, CrashHistoryFault, testing::ValuesIn(kFaults),
