@@ -31,18 +31,6 @@ WireFormatLite::WireType wire_type_of(const FieldDescriptor& field) {
   return WireFormat::WireTypeForFieldType(field.type());
 }
 
-/// Returns the number of elements of a packed list; an upper bound if their sizes vary.
-int packed_elements(const FieldDescriptor& field, int bytes) {
-  switch (wire_type_of(field)) {
-    case WireFormatLite::WIRETYPE_FIXED64:
-      return bytes / 8;
-    case WireFormatLite::WIRETYPE_FIXED32:
-      return bytes / 4;
-    default:
-      return bytes;
-  }
-}
-
 class WireScan {
  public:
   WireScan(CodedInputStream& in, Violations& violations) : in_(in), violations_(violations) {}
@@ -90,8 +78,15 @@ class WireScan {
   bool read_packed(const FieldDescriptor& field, ElementCounts& counts) {
     int size = 0;
     if (!read_size(&size)) return false;
-    count(field, counts) += packed_elements(field, size);
-    return in_.Skip(size);
+    const CodedInputStream::Limit outer = in_.PushLimit(size);
+    const WireFormatLite::WireType wire_type = wire_type_of(field);
+    bool is_whole = true;
+    while (is_whole && in_.BytesUntilLimit() > 0) {
+      ++count(field, counts);
+      is_whole = skip(wire_type);
+    }
+    in_.PopLimit(outer);
+    return is_whole;
   }
 
   bool read_known(const FieldDescriptor& field, ElementCounts& counts) {

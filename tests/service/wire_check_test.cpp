@@ -177,6 +177,8 @@ void fill_lists(Message& message, std::mt19937& random, int depth) {
         if (depth > 0 && count == 2) fill_lists(*added, random, depth - 1);
       } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_STRING) {
         reflection.AddString(&message, &field, "x");
+      } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_INT32) {
+        reflection.AddInt32(&message, &field, 100 * k);  // one byte or two
       } else {
         reflection.AddDouble(&message, &field, k);
       }

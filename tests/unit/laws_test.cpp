@@ -64,7 +64,7 @@ TEST(Laws, RootsHaveTheSlopesOfTheImplicitFunctionTheorem) {
   using Number = laws::Dual<double, 3>;
   const Number a = Number::variable(4, 0), b = Number::variable(2, 1);
   const Number x =
-      laws::root_with_slopes<3>(2, [&](const Number& at) { return at * at * at - a * b; });
+      laws::root_with_slopes<3>(2.0, [&](const Number& at) { return at * at * at - a * b; });
   EXPECT_EQ(x.value, 2);
   EXPECT_NEAR(x.slope[0], 2.0 / 3 / 4, 1e-15);
   EXPECT_NEAR(x.slope[1], 2.0 / 3 / 2, 1e-15);

@@ -23,12 +23,13 @@ async def read_columns(
     schema: pb.HistorySchema | None = None
     parts: list[list[np.ndarray]] = []
     backoff, tries_left = Backoff(), _READ_RETRIES
+    is_filtered = getattr(request, "filter", "") != ""
     while True:
         # Whole columns arrive in turns; a resumed stream begins at the first row that is missing in
         # any of them. The buckets of an envelope depend on its first row, and what a filter leaves
         # has no numbers: either is read again.
         done = min((sum(map(len, part)) for part in parts), default=0)
-        if schema is None or schema.rows_per_pair > 0 or getattr(request, "filter", ""):
+        if schema is None or schema.rows_per_pair > 0 or is_filtered:
             schema, done = None, 0
         parts = [_first(part, done) for part in parts] if schema else []
         request.start_row = start_row + done
