@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <map>
 #include <optional>
 #include <random>
@@ -12,6 +11,7 @@
 
 #include "server/storage/maintenance.h"
 #include "server/storage/store.h"
+#include "tests/service/schedule_seed.h"
 #include "tests/service/support.h"
 #include "tests/support/run_length.h"
 #include "tribodyn/v1/results.pb.h"
@@ -278,14 +278,8 @@ class Schedule {
   std::string log_;
 };
 
-/// TRIBODYN_TEST_SEED repeats the schedules of an earlier run.
-std::uint64_t first_seed() {
-  const char* given = std::getenv("TRIBODYN_TEST_SEED");
-  return given != nullptr ? std::strtoull(given, nullptr, 10) : std::random_device()();
-}
-
 TEST(StateMachine, AgreesWithItsModelOverRandomSchedules) {
-  const std::uint64_t seed = first_seed();
+  const std::uint64_t seed = first_schedule_seed();
   const TemporaryFolder folder(TemporaryFolder::Kind::kMemory);
   const std::string path = folder.file("tribodyn.db");
   {
