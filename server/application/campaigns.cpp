@@ -11,6 +11,7 @@
 #include "core/version.h"
 #include "server/application/computed_fields.h"
 #include "server/application/errors.h"
+#include "server/application/label_update.h"
 #include "server/application/list_filter.h"
 #include "server/application/page_token.h"
 #include "server/application/paging.h"
@@ -18,7 +19,6 @@
 #include "server/application/request_text.h"
 #include "server/contract/check_message.h"
 #include "server/contract/constraints.h"
-#include "server/contract/labels.h"
 #include "server/contract/output_only.h"
 #include "server/simulation/campaign_inputs.h"
 #include "server/simulation/result_key.h"
@@ -279,38 +279,6 @@ LubricantSearch lubricant_search(Application& application, const CallContext& ca
   };
 }
 
-/// Copies the display name and the labels that the request changes into `target`.
-void take_over_campaign_labels(const v1::UpdateCampaignRequest& request, v1::Campaign& target,
-                               Violations& violations) {
-  const v1::Campaign& stated = request.campaign();
-  const auto& paths = request.update_mask().paths();
-  const bool is_all = paths.size() == 1 && paths.Get(0) == "*";
-  bool takes_name = is_all || (paths.empty() && !stated.display_name().empty());
-  bool takes_labels = is_all || (paths.empty() && stated.labels_size() > 0);
-  for (int i = 0; i < paths.size() && !is_all; ++i) {
-    if (paths.Get(i) == "display_name") {
-      takes_name = true;
-    } else if (paths.Get(i) == "labels") {
-      takes_labels = true;
-    } else {
-      violations.push_back({"update_mask", fmt::format("\"{}\" cannot be changed; allowed: "
-                                                       "display_name, labels, *",
-                                                       plain_excerpt(paths.Get(i)))});
-      return;
-    }
-  }
-  if (takes_name) target.set_display_name(stated.display_name());
-  if (takes_labels) *target.mutable_labels() = stated.labels();
-  sort_labels(*target.mutable_labels());
-  v1::Campaign changed;  // a request of an older server may break newer constraints of other fields
-  changed.set_display_name(target.display_name());
-  *changed.mutable_labels() = target.labels();
-  check_message(changed, "campaign", violations);
-  if (target.labels_size() <= kMaximumSimulationLabels) {
-    check_labels(target.labels(), "campaign.labels", violations);
-  }
-}
-
 /// Reads the filter of a list of campaigns.
 std::vector<Restriction> campaign_restrictions(const std::string& filter, Violations& violations) {
   std::vector<Restriction> out = parse_filter(filter, kCampaigns, violations);
@@ -490,7 +458,7 @@ Outcome<v1::Campaign> update_campaign(Application& application,
     v1::Campaign changed;
     changed.ParseFromString(found.message().request);
     Violations violations;
-    take_over_campaign_labels(request, changed, violations);
+    take_over_labels(request.update_mask(), request.campaign(), "campaign", changed, violations);
     if (!violations.empty()) return invalid(violations);
     const auto updated = application.store.relabel_campaign(
         found.message(), changed.SerializeAsString(), labels_of(changed), call.limits);

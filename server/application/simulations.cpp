@@ -9,6 +9,7 @@
 
 #include "server/application/element_limits.h"
 #include "server/application/errors.h"
+#include "server/application/label_update.h"
 #include "server/application/list_filter.h"
 #include "server/application/page_token.h"
 #include "server/application/paging.h"
@@ -17,8 +18,6 @@
 #include "server/application/request_text.h"
 #include "server/application/result_summary.h"
 #include "server/application/simulation_lookup.h"
-#include "server/contract/check_message.h"
-#include "server/contract/labels.h"
 #include "server/simulation/assumptions.h"
 #include "server/simulation/cost_estimate.h"
 #include "server/simulation/input_hash.h"
@@ -399,41 +398,6 @@ namespace {
 constexpr int kWriteAttempts = 10;  // against other writers
 constexpr char kSimulationType[] = "tribodyn.v1.Simulation";
 
-/// Copies the display name and the labels that the request changes into `target`.
-void take_over_labels(const v1::UpdateSimulationRequest& request, v1::Simulation& target,
-                      Violations& violations) {
-  const v1::Simulation& stated = request.simulation();
-  const auto& paths = request.update_mask().paths();
-  const bool is_all = paths.size() == 1 && paths.Get(0) == "*";
-  bool takes_name = is_all || (paths.empty() && !stated.display_name().empty());
-  bool takes_labels = is_all || (paths.empty() && stated.labels_size() > 0);
-  for (int i = 0; i < paths.size() && !is_all; ++i) {
-    if (paths.Get(i) == "display_name") {
-      takes_name = true;
-    } else if (paths.Get(i) == "labels") {
-      takes_labels = true;
-    } else {
-      violations.push_back({"update_mask", fmt::format("\"{}\" cannot be changed; allowed: "
-                                                       "display_name, labels, *",
-                                                       plain_excerpt(paths.Get(i)))});
-      return;
-    }
-  }
-  if (takes_name) target.set_display_name(stated.display_name());
-  if (takes_labels) *target.mutable_labels() = stated.labels();
-  sort_labels(*target.mutable_labels());
-  Violations all;  // a request of an older server may break newer constraints of other fields
-  check_message(target, "simulation", all);
-  for (Violation& each : all) {
-    if (each.field == "simulation.display_name") violations.push_back(std::move(each));
-  }
-  if (target.labels_size() > kMaximumSimulationLabels) {
-    violations.push_back({"simulation.labels", "more than 64 entries"});
-  } else {
-    check_labels(target.labels(), "simulation.labels", violations);
-  }
-}
-
 Outcome<v1::Simulation> update_stored(Application& application,
                                       const v1::UpdateSimulationRequest& request,
                                       const CallContext& call) {
@@ -448,7 +412,8 @@ Outcome<v1::Simulation> update_stored(Application& application,
     v1::Simulation changed;
     changed.ParseFromString(present.request);
     Violations violations;
-    take_over_labels(request, changed, violations);
+    take_over_labels(request.update_mask(), request.simulation(), "simulation", changed,
+                     violations);
     if (!violations.empty()) return invalid(violations);
     std::vector<std::pair<std::string, std::string>> labels;
     for (const v1::Label& each : changed.labels()) labels.emplace_back(each.key(), each.value());

@@ -11,7 +11,7 @@ namespace tribodyn::server {
 
 using Labels = google::protobuf::RepeatedPtrField<v1::Label>;
 
-inline constexpr int kMaximumSimulationLabels = 64;
+inline constexpr int kMaximumLabels = 64;
 
 /// Adds a violation for each key that is not made of letters, digits, '-', '_' and '.', and for
 /// each key that occurs twice.

@@ -288,7 +288,7 @@ CampaignJobs::Admitted CampaignJobs::submit(const NewCampaign& campaign, const C
 }
 
 CampaignJobs::Appended CampaignJobs::append(const NewCandidates& candidates,
-                                            std::shared_ptr<CampaignInputs> inputs,
+                                            const std::shared_ptr<CampaignInputs>& inputs,
                                             const CallLimits& limits) {
   Appended out;
   const std::lock_guard control(control_mutex_);

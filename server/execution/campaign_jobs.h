@@ -54,7 +54,7 @@ class CampaignJobs {
     bool has_place = true;  ///< as in Admitted
   };
   /// Adds candidates and queues the campaign if it is RUNNING then. `inputs`: of all candidates.
-  Appended append(const NewCandidates& candidates, std::shared_ptr<CampaignInputs> inputs,
+  Appended append(const NewCandidates& candidates, const std::shared_ptr<CampaignInputs>& inputs,
                   const CallLimits& limits = {});
 
   // These functions return the campaign as it is then; nullopt if it does not exist. They change

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "server/contract/labels.h"
 #include "server/contract/resource_names.h"
 #include "server/contract/violations.h"
 #include "server/resources/gear_set_checks.h"
@@ -47,7 +48,6 @@ std::optional<v1::GearSet> accept(const v1::GearSet& stated, const LocateSample&
                                   const ResourceLookup& lookup, const std::string& path,
                                   Violations& violations);
 
-inline constexpr int kMaximumLabels = 64;
 inline constexpr int kMaximumProvenances = 200;
 inline constexpr int kMaximumMeasurements = 1000;  ///< rows of one table of measurements
 

@@ -114,10 +114,9 @@ void check_rest(const v1::Campaign& requested, const v1::Campaign& table, Violat
   *rest.mutable_candidate_lubricants() = table.candidate_lubricants();
   rest.set_lubricant_filter(requested.lubricant_filter());
   check_message(rest, "", violations);
-  if (requested.labels_size() > kMaximumSimulationLabels) {
-    violations.push_back(
-        {"labels", fmt::format("{} labels; allowed: at most {}", requested.labels_size(),
-                               kMaximumSimulationLabels)});
+  if (requested.labels_size() > kMaximumLabels) {
+    violations.push_back({"labels", fmt::format("{} labels; allowed: at most {}",
+                                                requested.labels_size(), kMaximumLabels)});
   } else {
     check_labels(requested.labels(), "labels", violations);
   }

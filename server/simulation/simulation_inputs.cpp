@@ -204,7 +204,7 @@ std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
   check_message(asked, path, violations);
   check_study(asked, path, violations);
   check_model_options(asked.model_options(), join_path(path, "model_options"), violations);
-  if (asked.labels_size() > kMaximumSimulationLabels) {
+  if (asked.labels_size() > kMaximumLabels) {
     violations.push_back({join_path(path, "labels"), "more than 64 entries"});
   } else {
     check_labels(asked.labels(), join_path(path, "labels"), violations);

@@ -24,7 +24,7 @@ std::string uses(const StoredResource& resource, bool is_of_campaigns = false) {
                                                               {"surfaces", "surface"},
                                                               {"vehicles", "vehicle"}};
   const std::string of_resource = " IN (SELECT id FROM revisions WHERE resource = ?1)";
-  const std::string as_input = kColumns.at(collection_of(resource.name)) + of_resource;
+  std::string as_input = kColumns.at(collection_of(resource.name)) + of_resource;
   if (!is_of_campaigns) return as_input;
   return "(" + as_input + " OR id IN (SELECT campaign FROM campaign_lubricants WHERE lubricant" +
          of_resource + "))";

@@ -141,7 +141,7 @@ TEST(Contract, StatesTheLimitsThatTheServerEnforces) {
   EXPECT_EQ(items("EvaluateCycleRequest", "lubricants"), server::kMostCycleLubricants);
   EXPECT_EQ(items("EvaluateCycleResponse", "start_seconds"), server::kMaximumCyclePieces);
   EXPECT_EQ(items("CycleLubricant", "mesh_loss_power_watts"), server::kMaximumCyclePieces);
-  EXPECT_EQ(items("Simulation", "labels"), server::kMaximumSimulationLabels);
+  EXPECT_EQ(items("Simulation", "labels"), server::kMaximumLabels);
   EXPECT_EQ(items("HistoryRequest", "columns"), server::kMaximumHistoryColumns);
   EXPECT_EQ(items("ReadHistoryRequest", "columns"), server::kMaximumHistoryColumns);
   EXPECT_EQ(items("InefficiencyCurveStudy", "speeds_kilometres_per_hour"),

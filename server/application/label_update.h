@@ -1,0 +1,54 @@
+#pragma once
+
+#include <fmt/format.h>
+#include <google/protobuf/field_mask.pb.h>
+
+#include <string>
+#include <utility>
+
+#include "server/contract/check_message.h"
+#include "server/contract/labels.h"
+#include "server/contract/resource_names.h"
+
+namespace tribodyn::server {
+
+/// Copies the display name and the labels that an update changes from `stated` into `target`, and
+/// checks them. `path`: of `stated` in the request. An empty mask means the fields that are set.
+template <class Resource>
+void take_over_labels(const google::protobuf::FieldMask& mask, const Resource& stated,
+                      const std::string& path, Resource& target, Violations& violations) {
+  const auto& paths = mask.paths();
+  const bool is_all = paths.size() == 1 && paths.Get(0) == "*";
+  bool takes_name = is_all || (paths.empty() && !stated.display_name().empty());
+  bool takes_labels = is_all || (paths.empty() && stated.labels_size() > 0);
+  for (int i = 0; i < paths.size() && !is_all; ++i) {
+    if (paths.Get(i) == "display_name") {
+      takes_name = true;
+    } else if (paths.Get(i) == "labels") {
+      takes_labels = true;
+    } else {
+      violations.push_back({"update_mask", fmt::format("\"{}\" cannot be changed; allowed: "
+                                                       "display_name, labels, *",
+                                                       plain_excerpt(paths.Get(i)))});
+      return;
+    }
+  }
+  if (takes_name) target.set_display_name(stated.display_name());
+  if (takes_labels) *target.mutable_labels() = stated.labels();
+  sort_labels(*target.mutable_labels());
+  // Other fields are left out: those of an older server may break newer constraints.
+  Resource changed;
+  changed.set_display_name(target.display_name());
+  *changed.mutable_labels() = target.labels();
+  Violations all;
+  check_message(changed, path, all);
+  for (Violation& each : all) {
+    const bool is_of_label = each.field.starts_with(path + ".labels");
+    if (is_of_label || each.field == path + ".display_name") violations.push_back(std::move(each));
+  }
+  if (target.labels_size() <= kMaximumLabels) {
+    check_labels(target.labels(), path + ".labels", violations);
+  }
+}
+
+}  // namespace tribodyn::server
