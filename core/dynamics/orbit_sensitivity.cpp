@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kSectionStates = 7, kRates = kSectionStates + 1;  // rates: of time, then of states
 
-// What is passed backwards, in two groups of lanes: time and states at the end of the period; and
-// what the figures are made of, the integrals of ContactSum, then these.
+// The adjoints, in two groups of lanes: of the time and the states at the end of the period; and of
+// the integrals of ContactSum, then of these, from which the figures are computed.
 enum Group { kOfEnd, kOfFigures, kGroups };
 enum { kSquaredLoss = kContactSums, kMinimum, kMaximum };
 constexpr int kIntegrals = kSquaredLoss + 1;

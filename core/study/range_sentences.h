@@ -6,8 +6,8 @@
 #include "core/model_options.h"
 #include "core/surface/surface.h"
 
-// What is said where a law leaves the range in which it was measured or checked, of points and of
-// rigs. Each sentence is empty inside the range.
+// Warnings of points and rigs where a law leaves the range in which it was measured or checked.
+// Each is empty inside the range.
 
 namespace tribodyn {
 

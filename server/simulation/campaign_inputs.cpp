@@ -362,7 +362,7 @@ std::optional<CampaignInputs> read_campaign(v1::Campaign request, const Resource
   sort_labels(*request.mutable_labels());
   Violations found, rest;
   make_candidates(request, lookup, search, found);
-  // Without candidates the rest is checked all the same: all violations are told at once.
+  // Without candidates the rest is checked too: the error lists all violations at once.
   if (!found.empty()) request.clear_candidate_attributes();  // there is nothing that they go with
   auto out = check_campaign(std::move(request), lookup, path, rest);
   std::set<std::string> fields;

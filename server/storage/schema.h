@@ -8,7 +8,7 @@
 
 namespace tribodyn::server {
 
-/// What is on disk, schema 13. Times are microseconds since 1970 (UTC). Messages are the protos of
+/// The tables of a database, schema 13. Times are microseconds since 1970 (UTC). Messages are the protos of
 /// tribodyn.v1 in binary form: field numbers never change meaning.
 ///
 ///   projects     one row per project; last_number is that of its latest simulation, removed or
@@ -63,8 +63,8 @@ namespace tribodyn::server {
 ///                of all blobs. When a campaign is removed, all below goes with it
 ///   campaign_labels  what lists are filtered by beside columns of campaigns, of its request
 ///   campaign_lubricants  the lubricants that are candidates, in their revisions
-///   campaign_appends  one row for each time that candidates were added: the first of them, and what
-///                tells a repeated request_id, unique in its campaign, from a misused one
+///   campaign_appends  one row for each request that added candidates: the first of them; request_id,
+///                unique in its campaign; request_hash, which differs if the id was reused
 ///   campaign_tiles  runs of rows that are computed; whole candidates each, in no row two
 ///   campaign_blobs  columns of tiles, compressed (column_codec.h). number: that of the column
 ///                (campaign_columns.h). checksum: of data

@@ -55,7 +55,7 @@ struct ExpectedCampaign {
   std::map<std::int64_t, double> values = {};             ///< by row
   std::map<std::int64_t, ExpectedSuspect> suspects = {};  ///< by first row
   std::map<std::string, std::string> appends = {};        ///< hash by request_id
-  std::int64_t seen_first_missing = 0;                    ///< told by the store before
+  std::int64_t seen_first_missing = 0;                    ///< of the last progress
 
   std::int64_t points() const { return candidates * kConditions; }
   std::int64_t done() const { return static_cast<std::int64_t>(values.size()); }

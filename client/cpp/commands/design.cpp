@@ -23,7 +23,7 @@ using google::protobuf::FieldDescriptor;
 
 constexpr int kMostDesigned = 1'000'000;
 
-/// A design, or the names of what it follows.
+/// A design, or the names of the resources whose uncertainties it follows.
 struct DesignOptions {
   DesignFlags design;
   std::string like;

@@ -43,8 +43,8 @@ struct TableFiles {
 bool read_profile(const std::string& text, TableFiles::Profile& profile);
 /// Reads the file of a profile. Throws Failure.
 v1::SurfaceProfile profile_message(const TableFiles::Profile& profile);
-/// Adds the flag or argument `name` for profiles, and what is done with them before their moments
-/// are formed. They write to `tables`, which must outlive them.
+/// Adds the flag or argument `name` for profiles, and the flags of their treatment before their
+/// moments are formed. They write to `tables`, which must outlive them.
 void add_profile_flags(FlagList& flags, const char* name, TableFiles& tables);
 /// Returns the error with the user's file names in place of the request's fields.
 ServiceError with_file_names(const ServiceError& error, const TableFiles& tables);
@@ -72,7 +72,7 @@ ResourcePointer create_with_tables(Connection& connection, const ResourceKind& k
                                    const TableFiles& tables, bool validate_only);
 
 /// Prints `done` with the name of a resource, then the resource, on standard output. All of it if
-/// `validate_only`, because what was not written cannot be shown afterwards.
+/// `validate_only`, because a resource that was not written cannot be shown afterwards.
 void show_written(const char* done, const google::protobuf::Message& resource, bool validate_only,
                   OutputFormat format, ResourceDetail detail);
 

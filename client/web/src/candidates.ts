@@ -136,7 +136,7 @@ export function unitOfHeader(header: string, role: Role, units: Unit[]): Unit | 
   return units.length === 1 || word(text).includes(field) || role.startsWith('measured:') ? units[0] : undefined;
 }
 
-/** A column of the table with what it is. */
+/** A column of the table with its role. */
 export interface TableColumn {
   role: Role;
   unit: Unit | undefined;

@@ -157,7 +157,7 @@ export function figuresSpec(lubricants: ComparedLubricant[], titles: string[], s
   };
 }
 
-/** Differences from the first lubricant over places of the axis: hollow where the two cannot be told apart. */
+/** Differences from the first lubricant over places of the axis: hollow where the difference is within its uncertainty. */
 export function differenceSpec(lubricants: ComparedLubricant[], titles: string[], speeds: number[], series: number[], xLabel: string): Spec {
   return {
     title: `Difference from ${titles[0]}, percentage points`, xLabel, yLabel: '% points',

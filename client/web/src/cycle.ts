@@ -60,7 +60,7 @@ const COLUMNS: { field: keyof CyclePlace; pattern: RegExp; unit: (header: string
   { field: 'sump_temperature_celsius', pattern: /^sump/i, unit: () => celsius },
 ];
 
-/** A mistake of a file: its line, counted from 1, and what is wrong there. */
+/** A fault of a file, at a line counted from 1. */
 export interface LineProblem {
   line: number;
   text: string;

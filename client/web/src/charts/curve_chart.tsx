@@ -10,7 +10,7 @@ const FONT = 'system-ui, sans-serif';
 const MOST_PLAIN = 10_000; // greater numbers are written as powers
 const SUPERSCRIPTS = '⁰¹²³⁴⁵⁶⁷⁸⁹';
 
-/** The text at a tick of a logarithmic axis: null and what is no round number have none. */
+/** The text at a tick of a logarithmic axis: empty for null and for numbers that are not round. */
 function logarithmicText(value: number | null): string {
   if (value === null) return '';
   const exponent = Math.floor(Math.log10(value) + 1e-9);
@@ -158,7 +158,7 @@ interface Motion {
 
 /**
  * Moves a plot while it is dragged with Shift, zooms it with Ctrl and the wheel; `onEnd` gets the new
- * range. What is shown changes at most once a frame.
+ * range. The picture changes at most once a frame.
  */
 function addMoves(u: uPlot, motion: Motion, isLogarithmic: boolean, onEnd: (range: [number, number]) => void): void {
   const forward = isLogarithmic ? Math.log10 : (value: number) => value;

@@ -90,7 +90,7 @@ export function NewCampaign() {
   const by = (query.get('by') ?? '').split(',').filter((each) => each !== '');
   const isWhole = candidates !== null && candidates.problems.length === 0 && table!.rows.length > 0 && columns.some(({ role }) => /^(parameter|measured):/.test(role));
   const key = useMemo(() => `check ${++checks}`, [candidates, query]);
-  // The service checks the request and says what it would take; it runs nothing.
+  // The service checks the request and estimates its cost; it computes nothing.
   const check = useLoaded(async (signal) => {
     if (!isWhole) return null;
     const given = await characterise(candidates, bases.value!, parameters, signal);
@@ -253,7 +253,7 @@ function Estimate({ answer }: { answer: Campaign }) {
   );
 }
 
-/** What each column is, and the rows with what is wrong in them. */
+/** The role of each column, and the faulty rows with their faults. */
 function TableForm({ table, columns, parameters, unitsOf: allowedUnits, problems, onChange }: {
   table: Table; columns: TableColumn[]; parameters: string[]; unitsOf: (role: Role) => Unit[]; problems: Problem[];
   onChange: (column: number, next: { role?: Role; unit?: string }) => void;

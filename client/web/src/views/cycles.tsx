@@ -193,7 +193,7 @@ function Form({ request, titles, file, onChange, onTake, violations }: {
 
 const SHOWN_LINES = 100;
 
-/** Lines of a file that are wrong, with what is wrong. */
+/** The faulty lines of a file, each with its fault. */
 function Lines({ own, problems }: { own: OwnCycle; problems: LineProblem[] }) {
   const texts = new Map([[1, own.table.header], ...own.table.rows.map(({ line, cells }) => [line, cells] as [number, string[]])]);
   return (
