@@ -149,9 +149,10 @@ std::string roughness_plot(const v1::EvaluateProfilesResponse& answer) {
            {21, "start", "#111", true, 0});
   for (std::size_t k = 0; k < std::size(kShownRoughness); ++k) {
     const ShownRoughness& shown = kShownRoughness[k];
+    const std::size_t row = k / 2, column = k % 2;
     Panel panel;
-    panel.corner = {kRoughnessLeft + kColumnPitch * static_cast<double>(k % 2),
-                    kPanelTop + kRowPitch * static_cast<double>(k / 2)};
+    panel.corner = {kRoughnessLeft + kColumnPitch * static_cast<double>(column),
+                    kPanelTop + kRowPitch * static_cast<double>(row)};
     panel.width = kPanelWidth;
     panel.height = kPanelHeight;
     panel.title = std::string(shown.name) + ", " + shown.unit;
