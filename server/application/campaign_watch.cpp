@@ -11,8 +11,8 @@ namespace tribodyn::server {
 namespace {
 
 /// Returns a number that differs between any two states of a campaign: the numbers of candidates
-/// and rows only grow, and while they are equal only the state changes. Below 2^53, which JavaScript keeps exactly:
-/// of 25 bits for points, 25 for those that are done and 3 for the state.
+/// and rows only grow, and while they are equal only the state changes. Below 2^53, which
+/// JavaScript keeps exactly: of 25 bits for points, 25 for those that are done and 3 for the state.
 std::int64_t version_of(const CampaignProgress& progress) {
   constexpr std::int64_t kStates = 8, kPoints = std::int64_t{1} << 25;
   return (progress.points * kPoints + progress.points_done) * kStates +

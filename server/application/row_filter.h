@@ -50,7 +50,8 @@ std::vector<RowCondition> read_row_filter(const std::string& filter, TableColumn
 /// The rows of a range that satisfy all conditions.
 class RowFilter {
  public:
-  /// Evaluates the conditions in all rows [start, end). `rows` must be frozen and outlive the object.
+  /// Evaluates the conditions in all rows [start, end). `rows` must be frozen and outlive the
+  /// object.
   RowFilter(CampaignRows& rows, std::vector<RowCondition> conditions, std::int64_t start,
             std::int64_t end);
 

@@ -8,8 +8,8 @@
 
 namespace tribodyn::server {
 
-/// The tables of a database, schema 13. Times are microseconds since 1970 (UTC). Messages are the protos of
-/// tribodyn.v1 in binary form: field numbers never change meaning.
+/// The tables of a database, schema 13. Times are microseconds since 1970 (UTC). Messages are the
+/// protos of tribodyn.v1 in binary form: field numbers never change meaning.
 ///
 ///   projects     one row per project; last_number is that of its latest simulation, removed or
 ///                not, and last_event that of its latest event. deletions: how many events of state
@@ -56,15 +56,16 @@ namespace tribodyn::server {
 ///                request: the Campaign as the client stated it, without its candidates, which are
 ///                the Campaign candidate_table; the name and the labels may change, candidates may
 ///                be added. points_done and the like change with each tile. lost_attempts:
-///                processes that began to compute it and neither ended in good order nor wrote tiles
-///                for long, where no suspect explains the loss.
-///                lost_candidates: those that are refused because processes were lost while they
-///                computed them, since the campaign was resumed. stored_bytes: of both messages and
-///                of all blobs. When a campaign is removed, all below goes with it
+///                processes that began to compute it and neither ended in good order nor wrote
+///                tiles for long, where no suspect explains the loss. lost_candidates: those that
+///                are refused because processes were lost while they computed them, since the
+///                campaign was resumed. stored_bytes: of both messages and of all blobs. When a
+///                campaign is removed, all below goes with it
 ///   campaign_labels  what lists are filtered by beside columns of campaigns, of its request
 ///   campaign_lubricants  the lubricants that are candidates, in their revisions
-///   campaign_appends  one row for each request that added candidates: the first of them; request_id,
-///                unique in its campaign; request_hash, which differs if the id was reused
+///   campaign_appends  one row for each request that added candidates: the first of them;
+///                request_id, unique in its campaign; request_hash, which differs if the id was
+///                used for another request
 ///   campaign_tiles  runs of rows that are computed; whole candidates each, in no row two
 ///   campaign_blobs  columns of tiles, compressed (column_codec.h). number: that of the column
 ///                (campaign_columns.h). checksum: of data
