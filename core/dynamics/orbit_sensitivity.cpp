@@ -15,8 +15,9 @@ namespace {
 
 constexpr int kSectionStates = 7, kRates = kSectionStates + 1;  // rates: of time, then of states
 
-// The adjoints, in two groups of lanes: of the time and the states at the end of the period; and of
-// the integrals of ContactSum, then of these, from which the figures are computed.
+// The adjoints, in two groups of lanes: those of time and states at the end of the period; those of
+// the integrals of ContactSum, followed by those of the quantities below. Figures are computed from
+// the second group.
 enum Group { kOfEnd, kOfFigures, kGroups };
 enum { kSquaredLoss = kContactSums, kMinimum, kMaximum };
 constexpr int kIntegrals = kSquaredLoss + 1;

@@ -117,9 +117,9 @@ std::string request_hash(const v1::Campaign& campaign) {
   return sha256(campaign.SerializeAsString());
 }
 
-/// Leaves in a stored campaign what its request stated, as far as the comparison with `stated`,
-/// another request under the same request_id, needs it: removes candidates that were added later
-/// and columns that the server made.
+/// Prepares the stored campaign `earlier` for a comparison with `stated`, a request under the same
+/// request_id: removes what its own request did not state, which are candidates that were added
+/// later, and columns, attributes and lubricants that the server made.
 void keep_stated(const v1::Campaign& stated, int created_candidates, v1::Campaign& earlier) {
   const bool is_of_lubricants = has_lubricants(earlier, earlier);
   keep_first_candidates(created_candidates, earlier);

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "server/application/element_limits.h"
 #include "server/contract/check_message.h"
 #include "server/contract/labels.h"
 #include "server/contract/resource_names.h"
@@ -46,7 +47,9 @@ void take_over_labels(const google::protobuf::FieldMask& mask, const Resource& s
     const bool is_of_label = each.field.starts_with(path + ".labels");
     if (is_of_label || each.field == path + ".display_name") violations.push_back(std::move(each));
   }
-  if (target.labels_size() <= kMaximumLabels) {
+  if (target.labels_size() > kMaximumLabels) {
+    violations.push_back({path + ".labels", too_many_text(target.labels_size(), kMaximumLabels)});
+  } else {
     check_labels(target.labels(), path + ".labels", violations);
   }
 }

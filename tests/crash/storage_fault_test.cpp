@@ -315,7 +315,7 @@ class StorageFault : public testing::Test {
 
   void fail_every(FaultyVfs::Operation operation, const std::string& name) {
     // There is one session for each operation. A session has hundreds of writes and reads: CI fails
-    // every third one, the full run each one.
+    // every third of them, under AddressSanitizer every sixth; the full run fails each.
     const bool many =
         operation == FaultyVfs::Operation::kWrite || operation == FaultyVfs::Operation::kRead;
     const int stride = !many || full_run() ? 1 : kUnderAddressSanitizer ? 6 : 3;

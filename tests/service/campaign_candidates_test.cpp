@@ -514,6 +514,10 @@ TEST_F(CandidatesTest, NameAndLabelsChangeWhateverTheState) {
   ASSERT_TRUE(update_campaign(application, request).ok());
   EXPECT_EQ(get("campaigns/2").display_name(), "Second screening");
   EXPECT_THAT(names("labels.project:*"), ElementsAre("campaigns/1"));
+  for (int i = 0; i < 65; ++i) request.mutable_campaign()->add_labels()->set_key(std::to_string(i));
+  EXPECT_THAT(complaints(update_campaign(application, request).error()),
+              HasSubstr("campaign.labels: 65 entries; allowed: at most 64"));
+  request.mutable_campaign()->clear_labels();
   request.mutable_update_mask()->set_paths(0, "tolerance");
   EXPECT_THAT(complaints(update_campaign(application, request).error()),
               HasSubstr("update_mask: \"tolerance\" cannot be changed; allowed: display_name, "

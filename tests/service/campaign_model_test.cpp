@@ -48,7 +48,6 @@ struct ExpectedCampaign {
   int candidates = 1;
   CampaignBudget budget = {};
   int lost_attempts = 0;
-  int lost_candidates = 0;
   double processor_seconds = 0;
   std::int64_t refused = 0;
   std::map<std::int64_t, std::int64_t> tiles = {};        ///< number of rows by first row
@@ -64,7 +63,6 @@ struct ExpectedCampaign {
     state = to;
     stop_reason = reason;
     lost_attempts = attempts;
-    lost_candidates = 0;
     if (has_ended(to)) suspects.clear();
   }
 
@@ -102,8 +100,8 @@ class CampaignSchedule {
     }
     for (const auto& [id, each] : campaigns_) compare_content(id, each);
     for (const auto& [id, each] : campaigns_) {  // leave nothing that runs for the next schedule
-      if (!has_ended(each.state))
-        store_.change_campaign({.id = id, .to = kCancelled, .time = now_});
+      if (has_ended(each.state)) continue;
+      store_.change_campaign({.id = id, .to = kCancelled, .time = now_});
     }
   }
 
@@ -149,7 +147,9 @@ class CampaignSchedule {
     added.input_hash = hash(0);
     added.candidates = 1 + draw(6);
     added.conditions = kConditions;
-    if (draw(3) == 0) added.budget = {.processor_seconds = draw(2) * 3.0, .points = 1 + draw(8)};
+    if (draw(3) == 0) {
+      added.budget = {.processor_seconds = draw(2) * 0.75, .points = draw(2) * (1 + draw(8))};
+    }
     for (std::string* each : {&added.lubricant_revision, &added.gear_set_revision,
                               &added.surface_revision, &added.vehicle_revision}) {
       *each = kRevision;
@@ -200,8 +200,8 @@ class CampaignSchedule {
       if (suspect.count > kConditions) {
         now.count = suspect.count / kConditions / 2 * kConditions;
         campaign.suspects[first + now.count] = {.count = suspect.count - now.count};
-      } else if (++now.lost_attempts == kMaximumLostAttempts) {
-        ++campaign.lost_candidates;
+      } else {
+        ++now.lost_attempts;
       }
     }
     return had_begun;
@@ -213,8 +213,8 @@ class CampaignSchedule {
     EXPECT_EQ(stored.has_value(), !has_ended(campaign.state)) << log_;
     if (has_ended(campaign.state)) return;
     ++campaign.lost_attempts;
-    const bool is_feared = campaign.lost_attempts > kMaximumLostAttempts ||
-                           campaign.lost_candidates > kMaximumLostCandidates;
+    // So few candidates never reach kMaximumLostCandidates, the other reason for WORKER_LOST.
+    const bool is_feared = campaign.lost_attempts > kMaximumLostAttempts;
     if (is_feared && campaign.state == kRunning) campaign.go(kPaused, "WORKER_LOST");
   }
 

@@ -39,7 +39,7 @@ export class Contents {
     this.lines = spec.lines.map((line) => ({ line, isAscending: isAscending(line.x), areas: areasOf(line) }));
   }
 
-  /** Paints areas, lines and points between the values `from` and `to` of the axis. */
+  /** Paints areas, lines and markers between the values `from` and `to` of the axis. */
   paint(context: CanvasRenderingContext2D, places: Places, from: number, to: number): void {
     context.lineJoin = 'round';
     for (const each of this.lines) this.paintAreas(context, places, each, from, to);
