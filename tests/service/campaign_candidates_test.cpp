@@ -23,7 +23,6 @@
 namespace tribodyn::server {
 namespace {
 
-using testing::Contains;
 using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
