@@ -6,7 +6,9 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
+#include <string_view>
 
 #include "core/version.h"
 #include "server/application/computed_fields.h"
@@ -16,6 +18,7 @@
 #include "server/application/page_token.h"
 #include "server/application/paging.h"
 #include "server/application/project_space.h"
+#include "server/application/read_mask.h"
 #include "server/application/request_text.h"
 #include "server/contract/check_message.h"
 #include "server/contract/constraints.h"
@@ -33,6 +36,10 @@ constexpr int kCampaignDeletions = 10;  // attempts, against others that resume 
 constexpr int kCampaignWrites = 10;     // attempts, against other writers
 constexpr std::size_t kMaximumSearchedBytes = 256 << 20;
 constexpr char kCampaignType[] = "tribodyn.v1.Campaign";
+// Fields of an answer that are read from the rows of a campaign, and from its table of candidates.
+constexpr std::array<std::string_view, 2> kRowsState = {"first_missing_row", "refusals"};
+constexpr std::array<std::string_view, 3> kCandidateTable = {
+    "candidate_columns", "candidate_attributes", "candidate_lubricants"};
 
 static_assert(static_cast<int>(CampaignState::kRunning) == v1::Campaign::RUNNING);
 static_assert(static_cast<int>(CampaignState::kPaused) == v1::Campaign::PAUSED);
@@ -401,15 +408,20 @@ Outcome<v1::Campaign> get_campaign(Application& application, const v1::GetCampai
                                    const CallContext& call) {
   Violations violations;
   check_choice(request, "view", violations);
+  const ReadMask mask(request.read_mask(), *v1::Campaign::descriptor(), violations);
   if (!violations.empty()) return invalid(violations);
   const auto found = find_campaign(application, request.name(), call);
   if (!found.ok()) return found.error();
   const StoredCampaign& stored = found.message();
   v1::Campaign out = to_message(application, stored);
-  add_rows_state(application, stored, call, out);
-  if (request.view() == v1::CAMPAIGN_VIEW_FULL) {
+  const auto asks_for = [&mask](std::string_view field) { return mask.asks_for(field); };
+  if (std::ranges::any_of(kRowsState, asks_for)) add_rows_state(application, stored, call, out);
+  const bool has_table = request.view() == v1::CAMPAIGN_VIEW_FULL ||
+                         (request.view() == v1::CAMPAIGN_VIEW_UNSPECIFIED && !mask.is_whole());
+  if (has_table && std::ranges::any_of(kCandidateTable, asks_for)) {
     out.MergeFromString(application.store.candidate_table(stored.id, call.limits));
   }
+  mask.apply(out);
   return out;
 }
 
@@ -421,6 +433,7 @@ Outcome<v1::ListCampaignsResponse> list_campaigns(Application& application,
   const std::string scope = full_name(call.project, kCampaigns) + "\n" + request.filter();
   std::int64_t before = 0;
   std::vector<Restriction> restrictions = campaign_restrictions(request.filter(), violations);
+  const ReadMask mask(request.read_mask(), *v1::Campaign::descriptor(), violations);
   if (!request.page_token().empty()) {
     const auto token = parse_page_token(application.page_token_key, scope, request.page_token());
     const auto number = token ? campaign_id(token->last.name) : std::nullopt;
@@ -436,6 +449,7 @@ Outcome<v1::ListCampaignsResponse> list_campaigns(Application& application,
   bool is_cut = false;
   for (const StoredCampaign& row : page.rows) {
     v1::Campaign next = to_message(application, row);
+    mask.apply(next);
     bytes += next.ByteSizeLong();
     is_cut = response.campaigns_size() > 0 && bytes > kMaximumPageBytes;
     if (is_cut) break;

@@ -361,11 +361,14 @@ std::optional<CampaignInputs> read_campaign(v1::Campaign request, const Resource
   keep_client_part(request);
   sort_labels(*request.mutable_labels());
   Violations found, rest;
+  // Without lubricants there is no first one either, which is the base unless another is stated.
+  const bool lacks_base = request.lubricant().empty() && !request.lubricant_filter().empty();
   make_candidates(request, lookup, search, found);
   // Without candidates the rest is checked too: the error lists all violations at once.
   if (!found.empty()) request.clear_candidate_attributes();  // there is nothing that they go with
   auto out = check_campaign(std::move(request), lookup, path, rest);
   std::set<std::string> fields;
+  if (lacks_base) fields.insert(join_path(path, "lubricant"));
   for (Violation& each : found) {
     fields.insert(join_path(path, each.field));
     violations.push_back({join_path(path, each.field), std::move(each.description)});

@@ -306,6 +306,62 @@ TEST_F(CampaignTest, IsPausedAndResumedByRequest) {
       << "it has ended";
 }
 
+TEST_F(CampaignTest, AReadMaskNamesTheFieldsOfAnAnswer) {
+  v1::Campaign campaign = campaign_of(3);
+  v1::CandidateColumn& glass = *campaign.add_candidate_columns();
+  glass.set_path("lubricant.vogel_reference_temperature_kelvin");
+  for (int i = 0; i < 3; ++i) glass.add_values(i == 1 ? 350 : 170);  // the second is refused
+  const std::string name = create(campaign);
+  ASSERT_TRUE(reaches(name, v1::Campaign::SUCCEEDED));
+  const v1::Campaign whole = get(name, v1::CAMPAIGN_VIEW_FULL);
+  ASSERT_GT(whole.refusals_size(), 0);
+  const auto answer = [&](std::initializer_list<const char*> paths, v1::CampaignView view = {}) {
+    v1::GetCampaignRequest request;
+    request.set_view(view);
+    for (const char* path : paths) request.mutable_read_mask()->add_paths(path);
+    return call(get_campaign, name, request);
+  };
+  EXPECT_EQ(answer({"*"}, v1::CAMPAIGN_VIEW_FULL).message().SerializeAsString(),
+            whole.SerializeAsString());
+
+  v1::Campaign expected;
+  expected.set_state(v1::Campaign::SUCCEEDED);
+  expected.set_points_refused(whole.points_refused());
+  EXPECT_EQ(answer({"state", "points_refused"}).message().SerializeAsString(),
+            expected.SerializeAsString());
+  expected.Clear();
+  for (const v1::CandidateColumn& column : whole.candidate_columns()) {
+    expected.add_candidate_columns()->set_path(column.path());
+  }
+  EXPECT_EQ(answer({"candidate_columns.path"}).message().SerializeAsString(),
+            expected.SerializeAsString())
+      << "without a view, the mask alone decides";
+  expected.clear_candidate_columns();
+  *expected.mutable_refusals() = whole.refusals();
+  expected.set_first_missing_row(whole.first_missing_row());
+  EXPECT_EQ(answer({"refusals", "first_missing_row", "candidate_columns"}, v1::CAMPAIGN_VIEW_BASIC)
+                .message()
+                .SerializeAsString(),
+            expected.SerializeAsString())
+      << "a mask names fields of the view";
+
+  v1::ListCampaignsRequest list;
+  list.mutable_read_mask()->add_paths("name");
+  list.mutable_read_mask()->add_paths("candidate_columns");
+  Application application = bench_.application();
+  const auto listed = list_campaigns(application, list);
+  ASSERT_EQ(listed.message().campaigns_size(), 1);
+  expected.Clear();
+  expected.set_name(name);
+  EXPECT_EQ(listed.message().campaigns(0).SerializeAsString(), expected.SerializeAsString());
+
+  const char* complaint =
+      "read_mask: \"stat\" is not a field of Campaign; did you mean \"state\"?\n";
+  EXPECT_EQ(complaints(answer({"stat"}).error()), complaint);
+  list.mutable_read_mask()->set_paths(0, "stat");
+  EXPECT_EQ(complaints(list_campaigns(application, list).error()), complaint);
+}
+
 TEST_F(CampaignTest, CancelledKeepsItsRowsAndIsDeleted) {
   const std::string name = create(campaign_of(3000));
   ASSERT_TRUE(eventually([&] { return get(name).points_done() > 0; }));
@@ -374,7 +430,8 @@ TEST_F(CampaignTest, ValidateOnlyStatesWhatItWouldTakeAndMakesNothing) {
   EXPECT_EQ(preview.message().points(), 6000);
   EXPECT_GT(preview.message().cost_estimate().processor_seconds(), 0.02);
   EXPECT_LT(preview.message().cost_estimate().processor_seconds(), 5);
-  EXPECT_EQ(bench_.store().campaigns({.project = "default", .restrictions = {}, .limit = 10}).total, 0);
+  EXPECT_EQ(bench_.store().campaigns({.project = "default", .restrictions = {}, .limit = 10}).total,
+            0);
 }
 
 TEST_F(CampaignTest, StatesAllViolationsAtOnce) {

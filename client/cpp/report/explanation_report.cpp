@@ -163,12 +163,15 @@ std::string main_cause_text(const v1::DifferenceExplanation& mean, const std::st
     const double share = cause.inefficiency_percent().shapley_value().value();
     if (std::abs(share) < kSmallestNamedCause * std::abs(total)) continue;
     std::string& text = (share > 0) == (total > 0) ? with : against;
-    if (text.empty()) text = parameter_group_text(cause.group()) + ", " + fixed(share, decimals);
+    if (text.empty()) {
+      text = "its " + parameter_group_text(cause.group()) + ", " + signed_fixed(share, decimals);
+    }
   }
   const bool is_sure = difference.interval_minimum() > 0 || difference.interval_maximum() < 0;
-  return b + (total > 0 ? " loses more than " : " loses less than ") + a + ", mainly by its " +
-         with + " of " + fixed(total, decimals) + " percentage points" +
-         (against.empty() ? "" : "; against it: its " + against) + "." +
+  // A share exceeds the difference where others work against it.
+  return b + " loses " + fixed(std::abs(total), decimals) + " percentage points " +
+         (total > 0 ? "more" : "less") + " than " + a + ". The largest share: " + with +
+         (against.empty() ? "" : "; the largest against it: " + against) + "." +
          (is_sure ? ""
                   : " Which of the two loses more is not sure: the 95 % interval of the difference "
                     "contains 0.");
