@@ -27,6 +27,7 @@ Spread spread_of(std::vector<double> draws, double coverage) {
   double squares = 0;
   for (const double each : draws) squares += square(each - mean);
   std::sort(draws.begin(), draws.end());
+  if (draws.front() == draws.back()) squares = 0;  // else the rounding of their mean
   const double outside = 0.5 * (1 - coverage);
   return {std::sqrt(squares / (count - 1)), quantile_of_sorted(draws, outside),
           quantile_of_sorted(draws, 1 - outside)};

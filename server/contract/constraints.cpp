@@ -231,6 +231,8 @@ constexpr Constraint kConstraints[] = {
      "the film ratio divides by it", Zero::kUnset},
     {"EvaluateRigRequest", "radius_x_metres", "m", 1e-5, 1e4, "eqs 15, 20, R_zx", ""},
     {"EvaluateRigRequest", "radius_y_metres", "m", 1e-5, 1e4, "eqs 15, 20, R_zy", "", Zero::kUnset},
+    {"EvaluateRigRequest", "draws", "", 19, 1999, "work limit",
+     "39 draws or more hold a 95 % interval", Zero::kUnset},
     {"RigBody", "youngs_modulus_pascals", "Pa", 1e6, 1e13, "eq 13, E", ""},
     {"RigBody", "poissons_ratio", "", -0.99, 0.5, "eq 13, nu", ""},
     {"RigBody", "thermal_conductivity_watts_per_metre_kelvin", "W/(m K)", 1e-3, 1e4, "eq 35, k_s",

@@ -180,13 +180,18 @@ InputErrors lubricant_errors(const v1::Lubricant& lubricant) {
   return out;
 }
 
-InputErrors scene_errors(const v1::Surface& surface, const v1::Vehicle& vehicle,
-                         double sump_temperature_uncertainty_kelvin,
-                         double inlet_temperature_rise_uncertainty_kelvin) {
+InputErrors surface_errors(const v1::Surface& surface) {
   InputErrors out;
   add_stated(
       surface, surface.provenance(), "surface.", {}, InputError::Sharing::kScene, "",
       [](UncertainInputs& inputs) -> Message& { return inputs.surface; }, out);
+  return out;
+}
+
+InputErrors scene_errors(const v1::Surface& surface, const v1::Vehicle& vehicle,
+                         double sump_temperature_uncertainty_kelvin,
+                         double inlet_temperature_rise_uncertainty_kelvin) {
+  InputErrors out = surface_errors(surface);
   add_stated(
       vehicle, vehicle.provenance(), "vehicle.", {}, InputError::Sharing::kScene, "",
       [](UncertainInputs& inputs) -> Message& { return inputs.vehicle; }, out);

@@ -49,6 +49,9 @@ struct InputErrors {
 /// temperatures at which parameters are stated are exact by definition.
 InputErrors lubricant_errors(const v1::Lubricant& lubricant);
 
+/// Returns the errors of a surface: each stated standard uncertainty.
+InputErrors surface_errors(const v1::Surface& surface);
+
 /// Returns the errors of what all lubricants share. Uncertainties of temperatures in K; 0: exact.
 InputErrors scene_errors(const v1::Surface& surface, const v1::Vehicle& vehicle,
                          double sump_temperature_uncertainty_kelvin,

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "core/rig/rig.h"
@@ -10,6 +11,7 @@
 #include "server/contract/violations.h"
 #include "tribodyn/v1/lubricants.pb.h"
 #include "tribodyn/v1/rigs.pb.h"
+#include "tribodyn/v1/surfaces.pb.h"
 
 namespace tribodyn::server {
 
@@ -17,16 +19,31 @@ namespace tribodyn::server {
 struct RigEvaluation {
   RigScene scene;
   std::shared_ptr<const v1::Lubricant> lubricant;
+  std::shared_ptr<const v1::Surface> surface;  ///< null for smooth specimens
+  double composite_rms_height = 0;             ///< replaces that of the surface [m]; 0: it stays
   std::string lubricant_revision;
   std::string surface_revision;  ///< empty for smooth specimens
 };
+
+/// One column of the answer and the figure that it holds.
+struct RigColumn {
+  const char* name;
+  google::protobuf::RepeatedField<double>* (v1::EvaluateRigResponse::*column)();
+  double RigPoint::*figure;
+};
+std::span<const RigColumn> rig_columns();
+
+/// Sets roughness and boundary friction of the specimens. A height other than 0 replaces that of
+/// the surface.
+void set_surface(const v1::Surface& surface, double composite_rms_height, RigScene& scene);
 
 /// Checks the request and finds its resources. Returns nullopt and adds all violations if the
 /// request is invalid.
 std::optional<RigEvaluation> read_rig(const v1::EvaluateRigRequest& request,
                                       const ResourceLookup& lookup, Violations& violations);
 
-/// Computes all conditions. A condition that the core refuses is a refused row. Throws Cancelled
+/// Computes all conditions, with the uncertainty of their figures if the request has draws. A
+/// condition that the core refuses is a refused row. Throws Cancelled
 /// soon after `is_over` returns true.
 v1::EvaluateRigResponse evaluate_rig(const v1::EvaluateRigRequest& request,
                                      const RigEvaluation& evaluation,

@@ -278,6 +278,7 @@ TEST(ContactUncertainty, IsThatOfARecomputationWithTheMovedInput) {
     const double value = out.GetReflection()->GetDouble(out, field);
     const double change = std::abs(plus.GetReflection()->GetDouble(plus, field) - value);
     EXPECT_EQ(each.value().value(), value);
+    EXPECT_LT(each.value().interval_minimum(), each.value().interval_maximum()) << each.figure();
     if (each.figure() != "friction_coefficient" &&
         each.figure() != "central_film_thickness_metres" &&
         each.figure() != "contact_temperature_kelvin") {

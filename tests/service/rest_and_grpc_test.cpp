@@ -583,7 +583,7 @@ TEST_F(RestAndGrpc, EveryMethodGivesTheSameAnswers) {
         R"(lubricant: "lubricants/paper-fluid-1" surface: "surfaces/run-in" radius_x_metres: 0.0127
       conditions { load_newtons: 38 entrainment_speed_metres_per_second: 2
                    slide_roll_ratio_percent: 10 supply_temperature_celsius: 40 })");
-  check("EvaluateRig", R"(lubricant: "lubricants/paper-fluid-1" radius_x_metres: 0.0127
+  check("EvaluateRig", R"(lubricant: "lubricants/paper-fluid-1" radius_x_metres: 0.0127 draws: 19
       grid { supply_temperatures_celsius: 40 supply_temperatures_celsius: 90
              mean_pressures_pascals: 8e8 entrainment_speeds_metres_per_second: 2
              slide_roll_ratios_percent: 0 slide_roll_ratios_percent: 20 })");

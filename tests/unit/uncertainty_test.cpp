@@ -118,6 +118,8 @@ TEST(Spread, OfEqualDrawsIsNothing) {
   EXPECT_EQ(spread.standard_deviation, 0);
   EXPECT_EQ(spread.low, 3);
   EXPECT_EQ(spread.high, 3);
+  // The mean of these is not the number itself.
+  EXPECT_EQ(spread_of(std::vector<double>(199, 0.1)).standard_deviation, 0);
 }
 
 TEST(Spread, SharesBelowZeroCountZerosHalf) {
