@@ -70,7 +70,7 @@ function labelOf(name: string, kind: ColumnKind): string {
 /** Reads the rows of a campaign that are shown: its first ones, finished or not. */
 export async function readRows(campaign: Campaign, signal: AbortSignal): Promise<Rows> {
   const factors = (campaign.candidate_columns ?? []).map((each) => each.path!);
-  const attributes = (campaign.candidate_attributes ?? []).filter((each) => (each.values ?? []).length > 0).map((each) => each.name!);
+  const attributes = (campaign.candidate_attributes ?? []).filter((each) => (each.texts ?? []).length === 0).map((each) => each.name!);
   const states = Object.keys(CONDITIONS).filter((name) => new Set((campaign.conditions ?? []).map((each) => each[name as keyof typeof each])).size > 1);
   const read = (columns: string[]) => get<Table>(url(`${campaign.name}:read`, { alt: 'columns', columns, row_count: MOST_ROWS }), signal);
   const [figures, inputs] = await Promise.all([read([]), read(['candidate', 'condition', ...states, ...factors, ...attributes])]);

@@ -171,8 +171,14 @@ const MOST_NAME = 63; // characters of the name of an attribute
 
 const attributeName = (header: string): string => header.trim().replace(/[^A-Za-z0-9._-]+/g, '_').replace(/^_+|_+$/g, '').slice(0, MOST_NAME) || '_';
 
+/** What a campaign has already, for candidates that are added to it. */
+export interface Present {
+  paths: string[]; // of its columns
+  attributes: Map<string, 'values' | 'texts'>;
+}
+
 /** Reads the cells. An empty cell of a parameter leaves the value of its base. */
-export function candidatesOf(table: Table, columns: TableColumn[], bases: Bases): Candidates {
+export function candidatesOf(table: Table, columns: TableColumn[], bases: Bases, present?: Present): Candidates {
   const out: Candidates = { columns: [], sources: [], attributes: [], attributeSources: [], measurements: [], stated: [], problems: [] };
   const isMeasured = columns.some(({ role }) => role.startsWith('measured:'));
   if (isMeasured) {
@@ -199,7 +205,10 @@ export function candidatesOf(table: Table, columns: TableColumn[], bases: Bases)
     if (role === 'attribute') {
       const values = cells.map((text) => (text === '' ? NaN : numberOf(text, plain(''))));
       const name = attributeName(table.header[column]!);
-      return keepAttribute(values.every(Number.isFinite) ? { name, values } : { name, texts: cells });
+      const kind = present?.attributes.get(name) ?? (values.every(Number.isFinite) ? 'values' : 'texts');
+      if (kind === 'texts') return keepAttribute({ name, texts: cells });
+      values.forEach((value, row) => Number.isFinite(value) || out.problems.push({ row, column, text: `"${cells[row]}" is not a number; those of the campaign are` }));
+      return keepAttribute({ name, values: values.map((value) => (Number.isFinite(value) ? value : 0)) });
     }
     if (!unit) return out.problems.push({ row: -1, column, text: 'choose its unit' });
     const scale = kind === 'uncertainty' ? { ...unit, offset: 0 } : unit;
@@ -236,9 +245,10 @@ function put(message: Record<string, unknown>, path: string, value: number): voi
 
 /**
  * Has the service compute the parameters of lubricants from their data sheets, as it does for an oil
- * that is entered; nothing is stored. Adds the columns in which a candidate differs from the base.
+ * that is entered; nothing is stored. Adds the columns in which a candidate differs from the base, and
+ * those that the campaign has.
  */
-export async function characterise(candidates: Candidates, bases: Bases, parameters: string[], signal: AbortSignal): Promise<Candidates> {
+export async function characterise(candidates: Candidates, bases: Bases, parameters: string[], signal: AbortSignal, present?: Present): Promise<Candidates> {
   if (candidates.measurements.length === 0) return candidates;
   const paths = parameters.filter((each) => each.startsWith('lubricant.')).map((each) => each.slice('lubricant.'.length));
   const found: Lubricant[] = [];
@@ -262,7 +272,8 @@ export async function characterise(candidates: Candidates, bases: Bases, paramet
   const columns = paths.filter((path) => !(isGiven && path.startsWith('pressure_viscosity_'))).flatMap((path): CandidateColumn[] => {
     const usual = within(bases.lubricant, path);
     const values = found.map((each) => within(each, path) ?? usual);
-    return values.some((value) => value === undefined) || values.every((value) => value === usual) ? [] : [{ path: `lubricant.${path}`, values: values as number[] }];
+    const isWanted = present?.paths.includes(`lubricant.${path}`) === true || values.some((value) => value !== usual);
+    return values.some((value) => value === undefined) || !isWanted ? [] : [{ path: `lubricant.${path}`, values: values as number[] }];
   });
   return { ...candidates, columns: [...columns, ...candidates.columns], sources: [...columns.map(() => -1), ...candidates.sources] };
 }

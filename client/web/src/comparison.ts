@@ -11,6 +11,8 @@ export interface CompareRequest {
   b: string;
   sump: number; // [C]
   gearSet: string; // id; "": the reference axle
+  surface: string; // ids with revisions of a link; "": the usual ones
+  vehicle: string;
   first: number; // [km/h]
   last: number; // [km/h]
   step: number; // [km/h]
@@ -26,7 +28,7 @@ export function compareRequestOf(query: URLSearchParams): CompareRequest {
   const numbers = Object.fromEntries(Object.entries(WORDS).map(([key, word]) =>
     [key, query.has(word) ? Number(query.get(word)) : USUAL[key as keyof typeof USUAL]])) as typeof USUAL;
   return {
-    a: query.get('a') ?? '', b: query.get('b') ?? '', gearSet: query.get('gear') ?? '',
+    a: query.get('a') ?? '', b: query.get('b') ?? '', gearSet: query.get('gear') ?? '', surface: query.get('surface') ?? '', vehicle: query.get('vehicle') ?? '',
     options: (query.get('opt') ?? '').split(',').filter((each) => each !== ''), ...numbers,
   };
 }
@@ -34,7 +36,7 @@ export function compareRequestOf(query: URLSearchParams): CompareRequest {
 export function compareQueryOf(request: CompareRequest): Record<string, string | undefined> {
   return {
     a: request.a || undefined, b: request.b || undefined, gear: request.gearSet || undefined,
-    opt: request.options.join(',') || undefined,
+    surface: request.surface || undefined, vehicle: request.vehicle || undefined, opt: request.options.join(',') || undefined,
     ...Object.fromEntries(Object.entries(WORDS).map(([key, word]) => {
       const value = request[key as keyof typeof USUAL];
       return [word, value === USUAL[key as keyof typeof USUAL] ? undefined : String(value)];
@@ -61,6 +63,8 @@ const conditionOf = (request: CompareRequest, speed: number): PointCondition =>
 
 const common = (request: CompareRequest) => ({
   ...(request.gearSet ? { gear_set: `gearSets/${request.gearSet}` } : {}),
+  ...(request.surface ? { surface: `surfaces/${request.surface}` } : {}),
+  ...(request.vehicle ? { vehicle: `vehicles/${request.vehicle}` } : {}),
   ...(request.options.length > 0 ? { model_options: Object.fromEntries(request.options.map((each) => [each, true])) } : {}),
   ...(request.sumpUncertainty !== 0 ? { sump_temperature_uncertainty_kelvin: request.sumpUncertainty } : {}),
   estimate_correlation: request.correlation,
@@ -86,7 +90,8 @@ export const explainBodyOf = (request: CompareRequest, speeds: number[]): Explai
 
 const flagsOf = (request: CompareRequest, speeds: number[], project: string): string =>
   [...(project === 'default' ? [] : ['--project', project]), '--speeds', speeds.join(','), '--sump-temperature-celsius', request.sump,
-    ...(request.gearSet ? ['--gear-set', request.gearSet] : []),
+    ...(request.gearSet ? ['--gear-set', request.gearSet] : []), ...(request.surface ? ['--surface', request.surface] : []),
+    ...(request.vehicle ? ['--vehicle', request.vehicle] : []),
     ...(request.sumpUncertainty !== 0 ? ['--sump-temperature-uncertainty-kelvin', request.sumpUncertainty] : []),
     '--estimate-correlation', request.correlation,
     ...request.options.map((each) => `--${each.replaceAll('_', '-')}`)].join(' ');

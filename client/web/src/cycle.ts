@@ -2,7 +2,7 @@ import type { CycleLubricant, CyclePart, CyclePartKind, CyclePlace, EvaluateCycl
 import { tableOf, type Table } from './candidates';
 import { finite } from './components/num';
 import type { Line, Spec } from './charts/spec';
-import { celsius, plain, readNumber, shown, watts, type Unit } from './units';
+import { plain, readNumber, shown, watts, type Unit } from './units';
 
 /** What the form of a cycle holds. */
 export interface CycleRequest {
@@ -57,7 +57,7 @@ const COLUMNS: { field: keyof CyclePlace; pattern: RegExp; unit: (header: string
   // 3.6 is exact: m/s to km/h.
   { field: 'speed_kilometres_per_hour', pattern: /^(speed|v)\b|^speed_/i, unit: (header) => (/m\/s|metres_per_second$/.test(header) ? { symbol: 'm/s', factor: 1 / 3.6, offset: 0 } : plain('km/h')) },
   { field: 'ascent_angle_degrees', pattern: /^(slope|ascent)/i, unit: () => plain('°') },
-  { field: 'sump_temperature_celsius', pattern: /^sump/i, unit: () => celsius },
+  { field: 'sump_temperature_celsius', pattern: /^sump/i, unit: (header) => (/\bK\b|kelvin/.test(header) ? { symbol: 'K', factor: 1, offset: 273.15 } : plain('°C')) },
 ];
 
 /** A fault of a file, at a line counted from 1. */

@@ -29,10 +29,10 @@ export function address(path: string, query?: Record<string, string | undefined>
   return prefix + path + (words.length > 0 ? `?${words.join('&')}` : '');
 }
 
-/** Goes to an address of this page. A new view is pushed; a setting of a view replaces it. */
+/** Goes to an address of this page. A new view is pushed; a setting of a view replaces it, and leaves its fragment. */
 export function go(to: string, how: 'push' | 'replace' = 'push'): void {
   if (how === 'push') history.pushState(null, '', to);
-  else history.replaceState(null, '', to);
+  else history.replaceState(null, '', to + (new URL(to, location.href).pathname === location.pathname ? location.hash : ''));
   place.set(placeOf(location));
   if (how === 'push') window.scrollTo(0, 0);
 }
@@ -51,7 +51,7 @@ export function follow(event: MouseEvent): void {
   if (event.defaultPrevented || event.button !== 0 || event.ctrlKey || event.metaKey || event.shiftKey) return;
   const link = (event.target as Element).closest('a');
   if (!link || link.origin !== location.origin || link.hasAttribute('download') || link.target) return;
-  if (link.pathname.startsWith('/v1/')) return;
+  if (link.pathname.startsWith('/v1/') || link.getAttribute('href')!.startsWith('#')) return;
   event.preventDefault();
-  go(link.pathname + link.search);
+  go(link.pathname + link.search + link.hash);
 }

@@ -248,3 +248,119 @@ test('candidates of data sheets have the parameters that the service gives oils 
   for (const { path, values } of campaign.candidate_columns) assert.equal(values[0], oil[path.replace('lubricant.', '')], path);
   assert.deepEqual(page.complaints, []);
 });
+
+/** The campaign on whose page the browser is, with its candidates. */
+const shownCampaign = () => server.call('GET', `/v1${new URL(page.url()).pathname}?view=CAMPAIGN_VIEW_FULL`);
+
+test('the service makes the candidates of a design, whose mistakes stand at their fields', async () => {
+  await openForm();
+  await page.getByRole('button', { name: 'A design' }).click();
+  await page.getByLabel('Candidates', { exact: true }).fill('16');
+  await page.getByLabel('Add a factor').selectOption('lubricant.relaxation_time_seconds');
+  await page.getByLabel('Relaxation time, least').fill('0.2');
+  await page.getByLabel('Relaxation time, greatest').fill('0.1');
+  await page.getByLabel('Relaxation time, greatest').press('Tab');
+  const factor = page.getByRole('group', { name: 'Factor 1' });
+  await factor.locator('.problem', { hasText: 'the range is 2e-07 to 1e-07' }).waitFor();
+  await page.getByLabel('Relaxation time, greatest').fill('0,6');
+  await page.getByLabel('Relaxation time, greatest').press('Tab');
+  await factor.getByLabel('Divided').selectOption('by ratios');
+  await page.getByText('16 candidates at 12 conditions are 192 points').waitFor();
+  await page.getByLabel('Add a factor').selectOption('surface.asperity_friction_coefficient');
+  await page.getByRole('group', { name: 'Factor 2' }).locator('.problem', { hasText: 'states no standard uncertainty' }).waitFor();
+  await page.getByLabel('friction coefficient, least').fill('0.05');
+  await page.getByLabel('friction coefficient, greatest').fill('many');
+  await page.getByLabel('friction coefficient, greatest').press('Tab');
+  await page.getByText('"many" is not a number').waitFor();
+  await page.getByLabel('friction coefficient, greatest').fill('0.12');
+  await page.getByLabel('friction coefficient, greatest').press('Tab');
+  await page.getByLabel('Method').selectOption('Grid');
+  await page.getByLabel('Relaxation time, levels').fill('4');
+  await page.getByLabel('Relaxation time, levels').press('Tab');
+  await page.getByText('12 candidates at 12 conditions are 144 points').waitFor();
+  assert.deepEqual(await foreignNumbers(page), []);
+  await page.getByLabel('Labels').fill('project=axle, a b=c');
+  await page.getByLabel('Labels').press('Tab');
+  await page.locator('.panel .problem', { hasText: 'allowed: letters, digits' }).waitFor();
+  await page.getByLabel('Labels').fill('project=axle, series=b');
+  await page.reload();
+  await page.getByText('12 candidates at 12 conditions are 144 points').waitFor();
+  await page.getByLabel('Labels').fill('project=axle, series=b');
+  await page.getByLabel('Labels').press('Tab');
+  await page.getByRole('button', { name: 'Create the campaign' }).click();
+  await page.getByText('144 of 144 rows are computed').waitFor();
+  const campaign = await shownCampaign();
+  assert.deepEqual(campaign.candidate_design, {
+    method: 'GRID', count: 0, seed: '0', algorithm_version: campaign.candidate_design.algorithm_version, factors: [
+      { parameter: 'lubricant.relaxation_time_seconds', minimum: 2e-7, maximum: 6e-7, scale: 'LOGARITHMIC', levels: 4 },
+      { parameter: 'surface.asperity_friction_coefficient', minimum: 0.05, maximum: 0.12, scale: 'SCALE_UNSPECIFIED', levels: 3 },
+    ],
+  });
+  assert.deepEqual(campaign.labels, [{ key: 'project', value: 'axle' }, { key: 'series', value: 'b' }]);
+  await page.getByRole('link', { name: 'series=b' }).click();
+  await page.waitForURL(/\/campaigns\?label=series%3Db$/);
+  await page.waitForFunction(() => document.querySelectorAll('tbody tr').length === 1);
+  assert.deepEqual(page.complaints, []);
+});
+
+test('fluids of the database are candidates, chosen or by a filter, and further ones are added', async () => {
+  await server.newOil('first-oil', 'First oil', 103, 15.1, 868);
+  await server.newOil('second-oil', 'Second oil', 95, 14.2, 862);
+  await page.goto(`${server.address}/campaigns/new?from=filter`);
+  await page.getByLabel('Filter', { exact: true }).fill('lims = 4');
+  await page.getByLabel('Filter', { exact: true }).press('Tab');
+  await page.locator('.problem', { hasText: '"lims" is not a field' }).waitFor();
+  assert.equal(await page.locator('.notice').count(), 0);
+  await page.getByLabel('Filter').fill('display_name : "Second oil"');
+  await page.getByLabel('Filter').press('Tab');
+  await page.getByRole('list', { name: 'Fluids that satisfy the filter' }).getByText('Second oil').waitFor();
+  await page.getByText('1 candidates at 12 conditions').waitFor();
+  await page.getByRole('button', { name: 'Fluids of the database' }).click();
+  await page.getByText('Choose the fluids to be screened.').waitFor();
+  await page.getByLabel('First oil').check();
+  await page.getByLabel('Lubricant 1').check();
+  await page.waitForURL(/of=first-oil,paper-fluid-1/);
+  await page.getByText('2 candidates at 12 conditions are 24 points').waitFor();
+  await page.getByRole('button', { name: 'Create the campaign' }).click();
+  await page.getByText('24 of 24 rows are computed').waitFor();
+  assert.deepEqual((await shownCampaign()).candidate_lubricants, ['lubricants/first-oil@1', 'lubricants/paper-fluid-1@1']);
+  await page.getByRole('link', { name: 'Add candidates' }).click();
+  await page.getByLabel('Second oil').check();
+  assert.equal(await page.getByLabel('First oil').count(), 0);
+  await page.getByText('Then 3 candidates at 12 conditions are 36 points').waitFor();
+  await page.getByRole('button', { name: 'Add the candidates' }).click();
+  await page.getByText('36 of 36 rows are computed').waitFor();
+  await page.getByRole('button', { name: 'Second oil', exact: true }).waitFor();
+  assert.deepEqual(page.complaints, []);
+});
+
+test('a further table adds candidates to a campaign and leaves what is computed', async () => {
+  const { name } = await server.call('POST', '/v1/campaigns', campaignOf(4));
+  await page.goto(`${server.address}/${name}`);
+  await page.getByText('24 of 24 rows are computed').waitFor();
+  const before = await server.call('GET', `/v1/${name}:read?alt=columns`);
+  await page.getByRole('link', { name: 'Add candidates' }).click();
+  const paste = (rows, header = 'alpha* [1/GPa];asperity_friction_coefficient;additive;cost_euros_per_kilogram') =>
+    page.getByLabel('Or paste it from a spreadsheet').fill(`${header}\n${rows}\n`);
+  await paste('15;0,1;9;dear');
+  await page.locator('td.wrong', { hasText: '"dear" is not a number; those of the campaign are' }).waitFor();
+  await page.getByRole('button', { name: 'Take the table away' }).click();
+  await paste('15', 'alpha* [1/GPa]');
+  await page.locator('.notice', { hasText: 'lacks the column "surface.asperity_friction_coefficient"' }).waitFor();
+  assert.ok(await page.getByRole('button', { name: 'Add the candidates' }).isDisabled());
+  await page.getByRole('button', { name: 'Take the table away' }).click();
+  await paste('15;0,1;9;7,5\n16;50;9;8');
+  await page.locator('td.wrong', { hasText: 'allowed: 0 to 10' }).waitFor();
+  await page.getByRole('button', { name: 'Take the table away' }).click();
+  await paste('15;0,1;9;7,5\n16;0,11;9;8');
+  await page.getByText('Then 6 candidates at 6 conditions are 36 points').waitFor();
+  assert.deepEqual(await foreignNumbers(page), []);
+  await page.getByRole('button', { name: 'Add the candidates' }).click();
+  await page.getByText('36 of 36 rows are computed').waitFor();
+  const campaign = await shownCampaign();
+  assert.deepEqual(campaign.candidate_columns.map(({ values }) => values.slice(4)), [[1.5e-8, 1.6e-8], [0.1, 0.11]]);
+  assert.deepEqual(campaign.candidate_attributes.map(({ texts, values }) => [texts.slice(4), values.slice(4)]), [[['9', '9'], []], [[], [7.5, 8]]]);
+  const after = await server.call('GET', `/v1/${name}:read?alt=columns`);
+  assert.deepEqual(after.columns.mesh_loss_power_watts.slice(0, 24), before.columns.mesh_loss_power_watts);
+  assert.deepEqual(page.complaints, []);
+});

@@ -95,6 +95,53 @@ test('a dropped cycle is added up, and its mistakes are named at their lines, wh
   assert.deepEqual(page.complaints, []);
 });
 
+test('a link reproduces the cycle that was dropped, and a cycle that is too long for a link goes with its file', async () => {
+  const rows = Array.from({ length: 1800 }, (_, k) => [k, Number((30 - 30 * Math.cos((2 * Math.PI * k) / 600)).toFixed(1))]);
+  await page.goto(`${server.address}/cycles?f=paper-fluid-1&cycle=own`);
+  await page.locator('.drop input').setInputFiles(file(`time;v [km/h]\n${rows.map((row) => row.join(';').replaceAll('.', ',')).join('\n')}\n`));
+  await page.getByRole('heading', { name: 'over “my cycle.csv”' }).waitFor();
+  await page.waitForURL(/#cycle=/);
+  const loss = () => total().locator('[data-value]').first().getAttribute('data-value');
+  const expected = await loss();
+  await page.getByLabel('Oils after the shear test').check();
+  await page.waitForURL(/sheared=1.*#cycle=/);
+  await page.getByLabel('Oils after the shear test').uncheck();
+  await page.waitForURL(/own#cycle=/);
+  await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
+  await page.getByText('Take away').click();
+  await page.getByRole('button', { name: 'Copy a link to this page' }).click();
+  await page.getByRole('button', { name: 'Copied' }).waitFor();
+  const link = await page.evaluate(() => navigator.clipboard.readText());
+  assert.match(link, /f=paper-fluid-1@1.*gear=reference-axle@1.*surface=run-in@1.*vehicle=passenger-car@1/);
+  assert.ok(link.length < 16_500, `${link.length} characters`);
+  // Another browser has no file of its own.
+  const other = await newPage(browser, server);
+  const sent = [];
+  other.on('request', (request) => sent.push(`${request.url()} ${request.headers().referer ?? ''}`));
+  await other.goto(link);
+  await signIn(other, server.token);
+  await other.getByRole('heading', { name: 'over “my cycle.csv”' }).waitFor();
+  assert.equal(await other.getByRole('region', { name: 'Energies of the whole cycle' }).locator('[data-value]').first().getAttribute('data-value'), expected);
+  assert.ok(!sent.some((each) => each.includes('#cycle=')), 'a fragment stays in the browser');
+  await other.getByText('Take away').click();
+  const [cycle] = await Promise.all([other.waitForEvent('download'), other.getByRole('button', { name: 'The cycle as CSV' }).click()]);
+  assert.deepEqual(readFileSync(await cycle.path(), 'utf8').trim().split('\n').slice(1).map((row) => row.split(',').map(Number)), rows);
+  await other.goto(`${server.address}/more`);
+  await other.goto(`${link.slice(0, -40)}`);
+  await other.getByText('The link is damaged').waitFor();
+  assert.deepEqual(other.complaints, []);
+  await other.context().close();
+  // Digits that no pattern makes shorter.
+  const digits = rows.map(([time, speed], k) => `${time},${Number((speed + ((k * 7919 * 7919) % 1e9) / 1e11).toFixed(12))}`);
+  await page.locator('.drop input').setInputFiles(file(`time_seconds,speed_kilometres_per_hour\n${digits.join('\n')}\n`));
+  await page.getByText('The cycle is too long for a link').waitFor();
+  assert.doesNotMatch(page.url(), /#/);
+  const [long] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'its file' }).click()]);
+  assert.equal(long.suggestedFilename(), 'my cycle.csv');
+  assert.deepEqual(readFileSync(await long.path(), 'utf8').trim().split('\n').slice(1), digits);
+  assert.deepEqual(page.complaints, []);
+});
+
 test('a sump that the service refuses is named at its field', async () => {
   await page.goto(`${server.address}/cycles?f=paper-fluid-1`);
   await total().waitFor();

@@ -7,6 +7,7 @@ import type {
 import type { Column, Range, Rows } from '../campaign';
 import { Scatter, type Dot } from '../charts/scatter';
 import { Bars } from '../components/bars';
+import { Entry } from '../components/entry';
 import { Failure, Notice } from '../components/notice';
 import { finite, Num } from '../components/num';
 import { inputWords } from '../comparison';
@@ -116,7 +117,7 @@ export function Ranking({ campaign, rows, ranges, version, chosen, onChoose }: D
     <section aria-label="Ranking" class={answer.isStale ? 'stale' : ''}>
       <ObjectiveChoice words="Good is" setting="goal" stated={stated} columns={columns} />
       <label class="inline">Standard uncertainty of the candidates' parameters, %
-        <input class="short" inputMode="decimal" value={String(percent)} onChange={(event) => set({ du: event.currentTarget.value.replace(',', '.') || undefined })} />
+        <Entry class="short" inputMode="decimal" value={String(percent)} onChange={(event) => set({ du: event.currentTarget.value.replace(',', '.') || undefined })} />
       </label>
       {answer.error !== undefined && <Failure error={answer.error} onRetry={answer.reload} />}
       {answer.value && <Counts of={answer.value} words={[[answer.value.ranked, 'candidates are ranked']]} />}

@@ -6,6 +6,7 @@ import { extentOf, isWithin, MOST_CANDIDATES, MOST_ROWS, orderedRows, rangesOf, 
 import { Parallel, type Axis } from '../charts/parallel';
 import { Scatter, type Dot } from '../charts/scatter';
 import { MARKERS } from '../charts/spec';
+import { Entry } from '../components/entry';
 import { Missing } from '../components/missing';
 import { Failure, Notice } from '../components/notice';
 import { Num } from '../components/num';
@@ -15,9 +16,11 @@ import { TakeAway } from '../components/take_away';
 import { shortTitle } from '../curve';
 import { ago, idOf, revisionIdOf, rounded } from '../format';
 import { titlesOf, useLoaded, useLubricants } from '../resources';
+import { labelText } from '../labels';
 import { address, place, set } from '../router';
 import { useStore } from '../store';
 import { readNumber, shown, sumpText, units, written } from '../units';
+import { AppendCandidates } from './campaign_append';
 import { Effects, Pareto, Promote, Ranking } from './campaign_decisions';
 import { NewCampaign } from './campaign_new';
 
@@ -29,10 +32,17 @@ const SHOWN_ROWS = 100;
 const MOST_AXES = 8;
 const ENDED = ['SUCCEEDED', 'FAILED', 'CANCELLED'];
 
+/** What lists show of a campaign. */
+const LISTED = 'name,display_name,state,stop,lubricant,candidates,conditions,points,points_done,points_refused,labels,create_time';
+/** What the page of a campaign shows; values of its candidates come with its rows. */
+const SHOWN = `${LISTED},refusals,lubricant_revision,gear_set_revision,surface_revision,vehicle_revision`;
+const SHOWN_OF_CANDIDATES = `${SHOWN},candidate_columns.path,candidate_attributes.name,candidate_attributes.texts`;
+
 export function Campaigns() {
   const { path } = useStore(place);
-  const id = path.split('/')[2];
+  const [, , id, part] = path.split('/');
   if (id === 'new') return <NewCampaign />;
+  if (part === 'append') return <AppendCandidates key={id} name={`campaigns/${id}`} />;
   return id ? <CampaignPage key={id} name={`campaigns/${id}`} /> : <CampaignList />;
 }
 
@@ -55,8 +65,8 @@ function State({ campaign }: { campaign: Campaign }) {
   const isOpen = !ENDED.includes(campaign.state!);
   return (
     <span class={`state ${campaign.state!.toLowerCase()}`}>
-      {isOpen && <progress max={campaign.points} value={campaign.points_done} aria-label="Progress" />}
-      {words[campaign.state!] ?? `${Math.floor((100 * campaign.points_done!) / campaign.points!)} %`}
+      {isOpen && <progress max={campaign.points} value={campaign.points_done ?? 0} aria-label="Progress" />}
+      {words[campaign.state!] ?? `${Math.floor((100 * (campaign.points_done ?? 0)) / campaign.points!)} %`}
     </span>
   );
 }
@@ -77,9 +87,30 @@ function Actions({ campaign, onChange, onFailure }: { campaign: Campaign; onChan
   );
 }
 
+/** The labels of a campaign; each leads to the campaigns that have it. */
+function Labels({ campaign }: { campaign: Campaign }) {
+  if ((campaign.labels ?? []).length === 0) return null;
+  return (
+    <ul class="labels" aria-label="Labels">
+      {campaign.labels!.map((each) => (
+        <li key={each.key}><a href={address('/campaigns', { label: labelText(each) })}>{labelText(each)}</a></li>
+      ))}
+    </ul>
+  );
+}
+
+/** The filter of a label: "project=axle", or of a key alone: "project". */
+function filterOf(label: string | null): string | undefined {
+  if (!label) return undefined;
+  const [key, ...value] = label.split('=');
+  return value.length > 0 ? `labels.${key} = ${JSON.stringify(value.join('='))}` : `labels.${key}:*`;
+}
+
 function CampaignList() {
+  const label = useStore(place).query.get('label');
+  const filter = filterOf(label);
   const list = useLoaded(async (signal) =>
-    (await get<ListCampaignsResponse>(url('campaigns', { page_size: PAGE }), signal)).campaigns ?? [], 'campaigns');
+    (await get<ListCampaignsResponse>(url('campaigns', { page_size: PAGE, read_mask: LISTED, filter }), signal)).campaigns ?? [], `campaigns ${filter}`);
   const titles = titlesOf(useLubricants().value);
   const [campaigns, setCampaigns] = useState<Campaign[] | undefined>();
   const [problem, setProblem] = useState<unknown>(null);
@@ -104,7 +135,9 @@ function CampaignList() {
       </div>
       {list.error !== undefined && <Failure error={list.error} onRetry={list.reload} />}
       {problem !== null && <Failure error={problem} />}
-      {campaigns?.length === 0 && (
+      {label && <p class="choices">Those with the label {label} <button onClick={() => set({ label: undefined })}>Show all campaigns</button></p>}
+      {campaigns?.length === 0 && label && <p class="muted">No campaign has this label.</p>}
+      {campaigns?.length === 0 && !label && (
         <section class="empty">
           <p>A campaign screens thousands of variants of an oil. <a href={address('/campaigns/new')}>Drop a table of candidates</a>, or begin one with the command line:</p>
           <pre class="command">tribodyn screen candidates.csv --like my-oil --speeds 20,40,60 --sumps 40,90</pre>
@@ -117,12 +150,12 @@ function CampaignList() {
             <tbody>
               {campaigns.map((each) => (
                 <tr key={each.name}>
-                  <td><a href={address(`/campaigns/${idOf(each.name)}`)}>{each.display_name || `Campaign ${idOf(each.name)}`}</a><small>{idOf(each.name)}</small></td>
+                  <td><a href={address(`/campaigns/${idOf(each.name)}`)}>{each.display_name || `Campaign ${idOf(each.name)}`}</a><small>{idOf(each.name)}</small><Labels campaign={each} /></td>
                   <td>{shortTitle(titles.get(idOf(each.lubricant)) ?? idOf(each.lubricant))}</td>
                   <td class="number">{each.candidates}</td>
                   <td class="number">{each.conditions?.length}</td>
                   <td><State campaign={each} />{each.stop && <small class={each.state === 'FAILED' ? 'problem' : ''}>{each.stop.message}</small>}</td>
-                  <td class="number">{each.points_refused}</td>
+                  <td class="number">{each.points_refused ?? 0}</td>
                   <td class="number">{ago(each.create_time)}</td>
                   <td><div class="actions"><Actions campaign={each} onChange={(next) => put(() => next, each.name!)} onFailure={setProblem} /></div></td>
                 </tr>
@@ -137,8 +170,8 @@ function CampaignList() {
 
 /** A campaign with its candidates, and without them if they are too many for a page. */
 async function readCampaign(name: string, signal: AbortSignal): Promise<Campaign> {
-  const basic = await get<Campaign>(url(name), signal);
-  return (basic.candidates ?? 0) > MOST_CANDIDATES ? basic : get<Campaign>(url(name, { view: 'CAMPAIGN_VIEW_FULL' }), signal);
+  const { candidates = 0 } = await get<Campaign>(url(name, { read_mask: 'candidates' }), signal);
+  return get<Campaign>(url(name, { read_mask: candidates > MOST_CANDIDATES ? SHOWN : SHOWN_OF_CANDIDATES }), signal);
 }
 
 function CampaignPage({ name }: { name: string }) {
@@ -175,6 +208,7 @@ function CampaignPage({ name }: { name: string }) {
   if (loaded.error !== undefined) return (loaded.error as { status?: number }).status === 404 ? <Missing /> : <Failure error={loaded.error} onRetry={loaded.reload} />;
   if (isDeleted) return <Notice kind="caution">The campaign was deleted.</Notice>;
   if (!campaign) return <p class="muted">Loading …</p>;
+  const canAppend = session.value?.scope !== 'read' && ['RUNNING', 'PAUSED', 'SUCCEEDED'].includes(campaign.state!) && (campaign.candidates ?? 0) > 1;
   const keep = (next: Campaign) => setCampaign((old) => ({ ...old, ...next, candidate_columns: old!.candidate_columns, candidate_attributes: old!.candidate_attributes } as Campaign));
   return (
     <>
@@ -185,17 +219,19 @@ function CampaignPage({ name }: { name: string }) {
             {campaign.candidates} candidates like {revisionIdOf(campaign.lubricant_revision)} at {campaign.conditions?.length} condition{campaign.conditions?.length === 1 ? '' : 's'};{' '}
             {revisionIdOf(campaign.gear_set_revision)}, {revisionIdOf(campaign.surface_revision)}, {revisionIdOf(campaign.vehicle_revision)}
           </p>
+          <Labels campaign={campaign} />
         </div>
         <div class="actions">
           <Actions campaign={campaign} onChange={keep} onFailure={setProblem} />
+          {canAppend && <a class="button" href={address(`/campaigns/${idOf(name)}/append`)}>Add candidates</a>}
           {rows.value && <Downloads campaign={campaign} rows={rows.value} />}
         </div>
       </div>
       {problem !== null && <Failure error={problem} />}
       {campaign.stop && <Notice kind={campaign.state === 'FAILED' ? 'error' : 'caution'}>{campaign.stop.message}</Notice>}
       <p class="campaign-progress">
-        <progress max={campaign.points} value={campaign.points_done} aria-label="Progress of the campaign" />
-        <span><span data-value={campaign.points_done}>{campaign.points_done}</span> of <span data-value={campaign.points}>{campaign.points}</span> rows are computed
+        <progress max={campaign.points} value={campaign.points_done ?? 0} aria-label="Progress of the campaign" />
+        <span><span data-value={campaign.points_done ?? 0}>{campaign.points_done ?? 0}</span> of <span data-value={campaign.points}>{campaign.points}</span> rows are computed
           {(campaign.points_refused ?? 0) > 0 && <>, <span data-value={campaign.points_refused}>{campaign.points_refused}</span> of them without figures</>}
           {campaign.state === 'CANCELLED' && '; the campaign was cancelled'}{campaign.state === 'RUNNING' && ' …'}</span>
       </p>
@@ -431,7 +467,7 @@ function Ranges({ columns, ranges, onRange }: { columns: Column[]; ranges: Range
     const range = ranges.find((each) => each.column === column.name);
     const ends: [number, number] = [range?.low ?? -Infinity, range?.high ?? Infinity];
     return (
-      <input aria-label={`${column.label}, ${k === 0 ? 'least' : 'greatest'}`} inputMode="decimal"
+      <Entry aria-label={`${column.label}, ${k === 0 ? 'least' : 'greatest'}`} inputMode="decimal"
         value={Number.isFinite(ends[k]) ? written(ends[k], column.unit) : ''} placeholder={k === 0 ? 'least' : 'greatest'}
         onChange={(event) => {
           const value = readNumber(event.currentTarget.value, column.unit);

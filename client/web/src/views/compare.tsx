@@ -7,6 +7,7 @@ import type {
 } from '../api/types';
 import { CurveChart } from '../charts/curve_chart';
 import { Bars, type Bar } from '../components/bars';
+import { Entry } from '../components/entry';
 import { finite, Num } from '../components/num';
 import { Failure, Notice } from '../components/notice';
 import { Swatch } from '../components/swatch';
@@ -82,7 +83,7 @@ export function Compare() {
               <Headline difference={other!.mean_difference} names={names} />
               <TakeAway name="comparison" spec={specs.difference} footer={footerOf(answer.value!, request)}
                 csv={() => tableOf(lines, speeds)} requests={{ compare: compareBodyOf(request), explain: explainBodyOf(request, explained) }}
-                commands={compareCommandsOf(request, explained, project)} link={pinned(request, lines, query)} />
+                commands={compareCommandsOf(request, explained, project)} link={pinned(request, answer.value!, query)} />
             </div>
             <Unstated answer={answer.value!} names={names} />
             <figure class="figure" aria-label={`${quantity.label} of both fluids`}>
@@ -136,9 +137,10 @@ const nearest = (speeds: number[], wanted: number): number =>
   speeds.reduce((best, speed) => (Math.abs(speed - wanted) < Math.abs(best - wanted) ? speed : best), speeds[0]!);
 
 /** The address of a comparison with the revisions that were compared: it shows the same tomorrow. */
-function pinned(request: CompareRequest, lines: ComparedLubricant[], query: URLSearchParams): string {
-  const [a, b] = lines.map((each) => revisionIdOf(each.lubricant_revision));
-  return address('/compare', { ...compareQueryOf({ ...request, a: a!, b: b! }), at: query.get('at') ?? undefined, y: query.get('y') ?? undefined });
+function pinned(request: CompareRequest, answer: ComparePointsResponse, query: URLSearchParams): string {
+  const [a, b] = answer.lubricants!.map((each) => revisionIdOf(each.lubricant_revision));
+  const inputs = { gearSet: revisionIdOf(answer.gear_set_revision), surface: revisionIdOf(answer.surface_revision), vehicle: revisionIdOf(answer.vehicle_revision) };
+  return address('/compare', { ...compareQueryOf({ ...request, ...inputs, a: a!, b: b! }), at: query.get('at') ?? undefined, y: query.get('y') ?? undefined });
 }
 
 interface FormProps {
@@ -167,7 +169,7 @@ function Form({ request, onChange, lubricants, violations }: FormProps) {
   const number = (key: 'sump' | 'first' | 'last' | 'step' | 'sumpUncertainty' | 'correlation', words: string, field: string, unit: Unit = plain('')) => (
     <label>
       {words}
-      <input type="number" step="any" value={written(request[key], unit)} aria-invalid={problemOf(field) !== undefined}
+      <Entry type="number" step="any" value={written(request[key], unit)} aria-invalid={problemOf(field) !== undefined}
         onChange={(event) => {
           const value = readNumber(event.currentTarget.value, unit);
           if (Number.isFinite(value)) onChange({ ...request, [key]: value });
@@ -317,7 +319,7 @@ function Reasons({ explanation, names }: { explanation: DifferenceExplanation | 
         <button aria-pressed={inWatts} onClick={() => setWatts(true)}>Loss, {watts.symbol}</button>
       </div>
       <Bars bars={bars} label="What each property group adds" less={`${b} loses less`} more={`${b} loses more`} />
-      <p class="small">Each bar is what {b}'s values of that group change, averaged over all orders of exchange (Shapley value); whiskers hold 95&nbsp;%.</p>
+      <p class="small">Each bar is what {b}'s values of that group change, averaged over all orders of exchange (Shapley value); whiskers hold 95&nbsp;%. Together they make the last bar; one of them can be longer, where others work against it.</p>
       {(explanation.contact_loss_combinations ?? 0) > 0 && explanation.contact_loss_combinations! < 64 && (
         <Notice kind="caution">Flanks part in some of the combinations: the shares depend on where the vibration sets in.</Notice>
       )}

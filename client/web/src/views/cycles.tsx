@@ -1,11 +1,13 @@
-import { useMemo, useState } from 'preact/hooks';
+import { useEffect, useMemo, useState } from 'preact/hooks';
 import { ApiError, change, get, url } from '../api/client';
 import type { CycleLubricant, CyclePart, EvaluateCycleResponse, ListSurfacesResponse, ListVehiclesResponse } from '../api/types';
 import { CurveChart } from '../charts/curve_chart';
 import { Bars } from '../components/bars';
+import { Entry } from '../components/entry';
 import { Failure, Notice } from '../components/notice';
 import { finite, Num } from '../components/num';
 import { Swatch } from '../components/swatch';
+import { save } from '../charts/svg';
 import { csvOf, TakeAway } from '../components/take_away';
 import { Validity } from '../components/validity';
 import { shortTitle } from '../curve';
@@ -13,6 +15,7 @@ import {
   cycleBodyOf, cycleCommandOf, cycleQueryOf, cycleRequestOf, lineProblems, lossSpec, ownCycleOf, partWords, speedSpec, STATES,
   type CycleRequest, type LineProblem, type OwnCycle,
 } from '../cycle';
+import { cycleOf, fragmentOf, tableOfCycle, type CycleFile } from '../cycle_link';
 import { idOf, revisionIdOf, rounded } from '../format';
 import { OPTIONS } from '../request';
 import { titlesOf, useGearSets, useLoaded, useLubricants } from '../resources';
@@ -27,17 +30,53 @@ const KILOMETRES = scaled('km', 1e-3);
 const PERCENT = plain('%');
 const DRAFT = 'cycle'; // in the storage of the tab
 
-interface File {
-  name: string;
-  text: string;
-}
-
-function storedFile(): File | null {
+function storedFile(): CycleFile | null {
   try {
     return JSON.parse(sessionStorage.getItem(DRAFT) ?? 'null');
   } catch {
     return null;
   }
+}
+
+const fileNameOf = (name: string): string => name.replace(/\.\w+$/, '') + '.csv';
+
+/** The cycle that was dropped or that the address holds. The address of the page holds it from then on, if it is short. */
+function useCycleFile(isOwn: boolean) {
+  const [file, setFile] = useState<CycleFile | null>(() => (location.hash === '' ? storedFile() : null));
+  const [isOpening, setOpening] = useState(location.hash !== '');
+  const [isDamaged, setDamaged] = useState(false);
+  const [fragment, setFragment] = useState<string | null | undefined>(); // null: too long; undefined: not packed yet
+  useEffect(() => {
+    const open = () => {
+      if (location.hash === '') return;
+      cycleOf(location.hash).then((found) => {
+        setFile(found ?? storedFile());
+        setDamaged(false);
+      }, () => setDamaged(true)).finally(() => setOpening(false));
+    };
+    open();
+    window.addEventListener('hashchange', open);
+    return () => window.removeEventListener('hashchange', open);
+  }, []);
+  useEffect(() => {
+    setFragment(undefined);
+    if (isOpening || isDamaged) return;
+    const { places, problems } = file && isOwn ? ownCycleOf(file.text) : { places: [], problems: [] };
+    let isCurrent = true;
+    void (places.length === 0 || problems.length > 0 ? Promise.resolve('') : fragmentOf(file!.name, places)).then((found) => {
+      if (!isCurrent) return;
+      setFragment(found);
+      if (location.hash !== (found ?? '')) history.replaceState(history.state, '', location.pathname + location.search + (found ?? ''));
+    });
+    return () => { isCurrent = false; };
+  }, [file, isOwn, isOpening, isDamaged]);
+  const take = (next: CycleFile | null) => {
+    setDamaged(false);
+    setFile(next);
+    if (next) sessionStorage.setItem(DRAFT, JSON.stringify(next));
+    else sessionStorage.removeItem(DRAFT);
+  };
+  return { file, isOpening, isDamaged, fragment, setFile: take };
 }
 
 /** Drive cycles: the energy that the mesh loses, when, and where it arises. */
@@ -49,8 +88,8 @@ export function Cycles() {
   const stated = cycleRequestOf(query);
   const usual = (lubricants.value ?? []).map((each) => idOf(each.name)).filter((id) => id.startsWith('paper-fluid-')).slice(0, 2);
   const request = { ...stated, fluids: stated.fluids.length > 0 ? stated.fluids : usual };
-  const [file, setFile] = useState<File | null>(storedFile);
-  const own = useMemo(() => (file ? ownCycleOf(file.text) : null), [file, inUnits]);
+  const { file, isOpening, isDamaged, fragment, setFile } = useCycleFile(stated.isOwn);
+  const own = useMemo(() => (file ? ownCycleOf(file.text) : null), [file]);
   const isComplete = request.fluids.length > 0 && (!request.isOwn || (own !== null && own.problems.length === 0));
   const body = cycleBodyOf(request, own?.places ?? []);
   const answer = useLoaded((signal) => (isComplete ? change<EvaluateCycleResponse>('POST', url('cycles:evaluate'), body, signal) : Promise.resolve(null)),
@@ -58,17 +97,17 @@ export function Cycles() {
   const violations = answer.error instanceof ApiError ? answer.error.violations : [];
   const problems = [...(own?.problems ?? []), ...(own && request.isOwn ? lineProblems(violations, own.table) : [])];
   const update = (next: CycleRequest) => go(address('/cycles', { ...cycleQueryOf(next), t: query.get('t') ?? undefined }), 'replace');
-  const take = (next: File | null) => {
+  const take = (next: CycleFile | null) => {
     setFile(next);
-    if (next) sessionStorage.setItem(DRAFT, JSON.stringify(next));
-    else sessionStorage.removeItem(DRAFT);
     update({ ...request, isOwn: next !== null });
   };
   const found = isComplete && answer.error === undefined ? answer.value : null;
   const fluids = found?.lubricants ?? [];
   const names = fluids.map((each) => shortTitle(titles.get(idOf(each.lubricant_revision)) ?? revisionIdOf(each.lubricant_revision)));
   const cycleName = request.isOwn ? file?.name ?? '' : 'NEDC';
-  const pinned = address('/cycles', { ...cycleQueryOf({ ...request, fluids: fluids.map((each) => revisionIdOf(each.lubricant_revision)) }), t: query.get('t') ?? undefined });
+  const inputs = found && { gearSet: revisionIdOf(found.gear_set_revision), surface: revisionIdOf(found.surface_revision), vehicle: revisionIdOf(found.vehicle_revision) };
+  const pinned = address('/cycles', { ...cycleQueryOf({ ...request, ...inputs, fluids: fluids.map((each) => revisionIdOf(each.lubricant_revision)) }), t: query.get('t') ?? undefined })
+    + (request.isOwn ? fragment ?? '' : '');
   const loss = useMemo(() => (found ? lossSpec(found, names) : null), [found, lubricants.value, inUnits]);
   const isShownElsewhere = violations.length > 0 && (lineProblems(violations, own?.table ?? { header: [], rows: [], hasDecimalCommas: false }).length > 0 || violations.some((each) => each.field.includes('sump')));
   return (
@@ -78,7 +117,8 @@ export function Cycles() {
       </aside>
       <div class={answer.isStale ? 'stale' : ''}>
         {request.isOwn && own && problems.length > 0 && <Lines own={own} problems={problems} />}
-        {request.isOwn && !own && <section class="empty"><h1>Drop a cycle</h1><p>A CSV with the columns time_seconds and speed_kilometres_per_hour; ascent_angle_degrees and sump_temperature_celsius may follow. The browser keeps the file, a link does not hold it.</p></section>}
+        {isDamaged && <Notice kind="error">The link is damaged: the cycle in it cannot be read.</Notice>}
+        {request.isOwn && !own && !isOpening && <section class="empty"><h1>Drop a cycle</h1><p>A CSV with the columns time_seconds and speed_kilometres_per_hour; ascent_angle_degrees and sump_temperature_celsius may follow. The address of the page then holds the cycle, unless it is long.</p></section>}
         {request.fluids.length === 0 && lubricants.value && <p class="muted">Choose a fluid.</p>}
         {answer.error !== undefined && !isShownElsewhere && <Failure error={answer.error} onRetry={answer.reload} />}
         {isComplete && answer.error === undefined && !found && <p class="muted">Adding up the cycle …</p>}
@@ -93,8 +133,15 @@ export function Cycles() {
                 </p>
               </div>
               <TakeAway name="cycle" spec={loss} footer={[`${cycleName}; sump ${written(request.sump, celsius)} ${celsius.symbol}`, found.model_version ?? '']} requests={body}
-                commands={[cycleCommandOf(request, cycleName, project)]} csv={() => tableOfPieces(found, names)} link={pinned} />
+                commands={[cycleCommandOf(request, cycleName, project)]} csv={() => tableOfPieces(found, names)} link={pinned}>
+                {request.isOwn && <button onClick={() => save(fileNameOf(cycleName), new Blob([tableOfCycle(file!.text)], { type: 'text/csv' }))}>The cycle as CSV</button>}
+              </TakeAway>
             </div>
+            {request.isOwn && fragment === null && (
+              <Notice kind="caution">
+                The cycle is too long for a link: send <button class="link" onClick={() => save(fileNameOf(cycleName), new Blob([tableOfCycle(file!.text)], { type: 'text/csv' }))}>its file</button> along, to be dropped on the page that the link opens.
+              </Notice>
+            )}
             <Totals fluids={fluids} names={names} reference={names[0]!} />
             <Traces answer={found} names={names} />
             <Origins answer={found} names={names} />
@@ -111,8 +158,8 @@ export function Cycles() {
 }
 
 function Form({ request, titles, file, onChange, onTake, violations }: {
-  request: CycleRequest; titles: Map<string, string>; file: File | null; violations: { field: string; description: string }[];
-  onChange: (request: CycleRequest) => void; onTake: (file: File | null) => void;
+  request: CycleRequest; titles: Map<string, string>; file: CycleFile | null; violations: { field: string; description: string }[];
+  onChange: (request: CycleRequest) => void; onTake: (file: CycleFile | null) => void;
 }) {
   const gearSets = useGearSets();
   const surfaces = useLoaded(async (signal) => (await get<ListSurfacesResponse>(url('surfaces', { page_size: 1000, read_mask: 'name,display_name' }), signal)).surfaces ?? [], 'surfaces');
@@ -165,7 +212,7 @@ function Form({ request, titles, file, onChange, onTake, violations }: {
         <legend>Axle</legend>
         <label>
           Sump, {celsius.symbol}
-          <input inputMode="decimal" value={written(request.sump, celsius)} aria-invalid={sumpProblem !== undefined}
+          <Entry inputMode="decimal" value={written(request.sump, celsius)} aria-invalid={sumpProblem !== undefined}
             onChange={(event) => {
               const value = readNumber(event.currentTarget.value, celsius);
               if (Number.isFinite(value)) onChange({ ...request, sump: value });

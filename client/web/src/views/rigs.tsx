@@ -2,6 +2,7 @@ import { useMemo, useState } from 'preact/hooks';
 import { ApiError, change, get, url } from '../api/client';
 import type { EvaluateRigResponse, ListSurfacesResponse } from '../api/types';
 import { CurveChart } from '../charts/curve_chart';
+import { Entry } from '../components/entry';
 import { Num } from '../components/num';
 import { Failure, Notice } from '../components/notice';
 import { Swatch } from '../components/swatch';
@@ -114,7 +115,7 @@ function Form({ request, onChange, titles, error }: { request: RigRequest; onCha
     return (
       <label>
         {label}{key === 'temperatures' && `, ${unit.symbol}`}
-        <input inputMode="decimal" value={request[key].map((each) => written(each, unit)).join(', ')} title="several with commas between them" aria-invalid={isWrong(field)}
+        <Entry inputMode="decimal" value={request[key].map((each) => written(each, unit)).join(', ')} title="several with commas between them" aria-invalid={isWrong(field)}
           onChange={(event) => {
             const values = event.currentTarget.value.split(/[,;]\s*|\s+/).map((word) => readNumber(word, unit)).filter((value) => !Number.isNaN(value));
             if (values.length > 0) onChange({ ...request, [key]: values });
@@ -126,7 +127,7 @@ function Form({ request, onChange, titles, error }: { request: RigRequest; onCha
   const number = (key: 'radius' | 'roughness', label: string, field: string) => (
     <label>
       {label}
-      <input inputMode="decimal" value={String(request[key])} aria-invalid={isWrong(field)}
+      <Entry inputMode="decimal" value={String(request[key])} aria-invalid={isWrong(field)}
         onChange={(event) => {
           const value = readNumber(event.currentTarget.value, plain(''));
           if (!Number.isNaN(value)) onChange({ ...request, [key]: value });
