@@ -1,5 +1,5 @@
 import type { BatchCreateLubricantsResponse, CandidateAttribute, CandidateColumn, Constraint, Lubricant, Surface } from './api/types';
-import { ApiError, change, url } from './api/client';
+import { ApiError, atField, change, url } from './api/client';
 import { inputWords } from './comparison';
 import { DATA_SHEET, symbolOf } from './lubricant_fields';
 import { plain, readNumber, scaled, type Unit } from './units';
@@ -283,7 +283,7 @@ export function problemOf(field: string, description: string, table: Table, colu
   const single = /^requests\[(\d+)\]\.?(?:lubricant\.?)?(.*)$/.exec(field);
   if (single) {
     const name = fieldOf(single[2]!.replace(/\[.*$/, ''));
-    return { row: Number(single[1]), column: columns.findIndex(({ role }) => role.includes(':') && fieldOf(role.split(':')[1]!) === name), text: description };
+    return { row: Number(single[1]), column: columns.findIndex(({ role }) => role.includes(':') && fieldOf(role.split(':')[1]!) === name), text: atField(description) };
   }
   const match = /candidate_(columns|attributes)\[(\d+)\](?:\.(?:values|texts)\[(\d+)\])?/.exec(field);
   if (!match) return undefined;
@@ -292,5 +292,5 @@ export function problemOf(field: string, description: string, table: Table, colu
   if (match[3] === undefined) return column < 0 ? undefined : { row: -1, column, text: description };
   const row = Number(match[3]);
   const text = column < 0 ? `${inputWords(candidates.columns[Number(match[2])]!.path!)}: ${description}` : description;
-  return row < table.rows.length ? { row, column, text } : undefined;
+  return row < table.rows.length ? { row, column, text: atField(text) } : undefined;
 }

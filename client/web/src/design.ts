@@ -1,3 +1,4 @@
+import { atField } from './api/client';
 import type { CandidateDesign, CandidateDesignMethod, Constraint, DesignFactor } from './api/types';
 import { unitsOf } from './candidates';
 import { plain, readNumber, shown, type Unit } from './units';
@@ -91,5 +92,5 @@ export function designBody(design: Design, constraints: Constraint[] | undefined
 export const designProblems = (violations: { field: string; description: string }[]): DesignProblem[] =>
   violations.flatMap(({ field, description }) => {
     const match = /candidate_design(?:\.(.*))?$/.exec(field);
-    return match ? [{ field: (match[1] ?? 'method').replace(/^(factors\[\d+\])$/, '$1.parameter'), text: description }] : [];
+    return match ? [{ field: (match[1] ?? 'method').replace(/^(factors\[\d+\])$/, '$1.parameter'), text: atField(description) }] : [];
   });

@@ -19,7 +19,7 @@ export const DATA_SHEET: Field[] = [
   measured('kinematic_viscosity_40_celsius_square_millimetres_per_second', 'Viscosity at 40 °C'),
   measured('kinematic_viscosity_100_celsius_square_millimetres_per_second', 'Viscosity at 100 °C'),
   measured('density_15_celsius_kilograms_per_cubic_metre', 'Density at 15 °C'),
-  measured('sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second', 'The same after shear'),
+  measured('sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second', 'After shear, at 100 °C'),
 ];
 
 export const PARAMETERS: Field[] = [

@@ -45,7 +45,7 @@ test('a mistake is named at its field, with the unit and range of the schema', a
   assert.equal(Number(await field.inputValue()).toPrecision(6), (1e9 * before.pressure_viscosity_coefficient_per_pascal).toPrecision(6));
   await field.fill('20000');
   await page.getByRole('button', { name: /Save/ }).click();
-  await page.locator('.problem', { hasText: 'pressure_viscosity_coefficient_per_pascal = 2e-05' }).waitFor();
+  await page.locator('.problem', { hasText: '2e-05 1/Pa' }).waitFor();
   assert.equal(await field.getAttribute('aria-invalid'), 'true');
   assert.ok(await field.evaluate((element) => element === document.activeElement), 'the field has the focus');
   await field.fill('abc');
@@ -217,5 +217,38 @@ test('what another project has is not found, in the words of what does not exist
   await other.goto(`${server.address}/p/axles/fluids/my-oil`);
   await other.getByRole('heading', { name: 'Nothing is here' }).waitFor();
   await other.context().close();
+  assert.deepEqual(page.complaints, []);
+});
+
+test('fluids are found by words of their names or by a filter, and sorted, and say how their parameters are known', async () => {
+  await server.newOil('thin-oil', 'Thin oil', 40, 7, 850);
+  await page.goto(`${server.address}/fluids`);
+  const names = () => page.getByRole('region', { name: 'Fluids' }).locator('tbody a').allTextContents();
+  const found = (count) => page.waitForFunction((wanted) => !document.querySelector('.stale') && document.querySelectorAll('tbody tr').length === wanted, count);
+  const search = async (text) => {
+    await page.getByLabel('Search names').fill(text);
+    await page.getByLabel('Search names').press('Enter');
+  };
+  await page.getByRole('row', { name: /Thin oil/ }).getByText('assumed, derived, fitted').waitFor();
+  await search('thin');
+  await found(1);
+  assert.deepEqual(await names(), ['Thin oil']);
+  await search('kv100 > 14.5 AND display_name : Lubricant');
+  await found(2);
+  await page.getByRole('button', { name: 'KV100' }).click();
+  await page.waitForURL(/q=kv100.*sort=kv100$/);
+  await page.locator('th[aria-sort="ascending"]').waitFor();
+  await found(2);
+  assert.deepEqual(await names(), ['Lubricant 2', 'Lubricant 1']);
+  await page.getByRole('button', { name: 'KV100' }).click();
+  await page.waitForFunction(() => document.querySelector('tbody a')?.textContent === 'Lubricant 1');
+  await page.reload();
+  await found(2);
+  assert.deepEqual(await names(), ['Lubricant 1', 'Lubricant 2']);
+  await search('lims = 4');
+  await page.locator('.search .problem', { hasText: '"lims" is not a field of a filter' }).waitFor();
+  await search('no such oil');
+  await page.getByRole('button', { name: 'Show all fluids' }).click();
+  await page.getByText('Thin oil').waitFor();
   assert.deepEqual(page.complaints, []);
 });

@@ -119,6 +119,14 @@ async function follow(page, path) {
   }
 }
 
+/** Opens and closes the menu of a view: all of it lies within the window. */
+async function checkMenu(page, width, problems) {
+  await page.getByText('Take away').click();
+  const { x, y, width: wide, height } = await page.locator('.menu[open] .menu-body').boundingBox();
+  if (x < 0 || x + wide > width || y < 0 || y + height > 900) problems.push(`the menu lies at ${x}, ${y} and is ${wide} by ${height} pixels large`);
+  await page.getByText('Take away').click();
+}
+
 /**
  * Tests every view in a theme. The themes are files of their own, which run beside each other. In one of
  * the runs each address is loaded afresh, in the others its view is reached by a link.
@@ -146,6 +154,7 @@ export function testViews(colorScheme) {
         await page.screenshot({ path: `${FOLDER}/${name}-${colorScheme}-${width}.png`, fullPage: true });
         const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
         if (overflow > 0) problems.push(`${name}: ${overflow} pixels wider than the window`);
+        if (name === 'compare') await checkMenu(page, width, problems);
         if (colorScheme === 'dark' && width === 390) continue; // its colors and its layout are looked at above
         if (isAfresh) await page.evaluate(AXE);
         const { violations } = await page.evaluate((options) => axe.run(document, options), OPTIONS);

@@ -7,6 +7,9 @@ export interface Violation {
   description: string;
 }
 
+/** What a refusal says beneath the field that it names: without the name. */
+export const atField = (description: string): string => description.replace(/^[a-z][a-z0-9_]*_[a-z0-9_]+ = /, '');
+
 /** A refusal of the server (AIP-193), or a server that does not answer (status 0). */
 export class ApiError extends Error {
   constructor(

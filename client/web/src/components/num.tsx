@@ -1,4 +1,4 @@
-import { rounded } from '../format';
+import { rounded, zero } from '../format';
 import { shown, type Unit } from '../units';
 
 /** protobuf's JSON writes what is no number as a text. */
@@ -20,7 +20,8 @@ export function Num({ value, error, unit, isSigned = false, withError = false, d
   if (number === null) return <span>–</span>;
   const spread = finite(error);
   const reach = spread === null ? undefined : Math.abs(spread * unit.factor);
-  const text = rounded(shown(number, unit), reach);
+  const present = shown(number, unit);
+  const text = present === 0 && withError && reach ? zero(reach) : rounded(present, reach);
   const sign = isSigned && /[1-9]/.test(text) && !text.startsWith('−') ? '+' : '';
   return (
     <span class="num">

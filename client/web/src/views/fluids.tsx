@@ -1,6 +1,7 @@
 import { useEffect, useRef, useState } from 'preact/hooks';
-import { ApiError, change, get, session, url, type Violation } from '../api/client';
-import type { Lubricant } from '../api/types';
+import { ApiError, atField, change, get, session, url, type Violation } from '../api/client';
+import type { ListLubricantsResponse, Lubricant } from '../api/types';
+import { Entry } from '../components/entry';
 import { Missing } from '../components/missing';
 import { Failure } from '../components/notice';
 import { Validity } from '../components/validity';
@@ -10,7 +11,7 @@ import { readNumber, shown, written } from '../units';
 import { LawMapView, Viscosity } from './fluid_laws';
 import { ALL_FIELDS, BASE_OILS, constraintOf, DATA_SHEET, PARAMETERS, PRESSURE_LAW, rangeText, unitOf, valueOf, type Field } from '../lubricant_fields';
 import { PROVENANCE } from '../provenance';
-import { useLoaded, useLubricants, useSchema } from '../resources';
+import { useLoaded, useSchema } from '../resources';
 import { address, go, place, set } from '../router';
 import { useStore } from '../store';
 
@@ -22,10 +23,46 @@ export function Fluids() {
   return action === 'edit' ? <EditFluid key={id} id={id} /> : <FluidPage key={id} id={id} />;
 }
 
+const LISTED = 'name,display_name,characterisation,revision,provenance.provenance';
+const MOST_LISTED = 1000;
+
+/** A search as a filter of the service: words of names, unless it is a filter itself, such as "kv100 > 14". */
+const filterOf = (search: string): string | undefined => (search === '' ? undefined : /[<>=:]/.test(search) ? search : `display_name : ${JSON.stringify(search)}`);
+
+/** The origins of the parameters of a fluid, each once. */
+const originsOf = (lubricant: Lubricant): string =>
+  [...new Set((lubricant.provenance ?? []).map((each) => PROVENANCE[each.provenance ?? ''] ?? ''))].filter((each) => each !== '').sort().join(', ');
+
+const COLUMNS: { field: string; label: string; unit?: string; of: (lubricant: Lubricant) => string }[] = [
+  { field: 'kv40', label: 'KV40', unit: 'mm²/s', of: (each) => rounded(each.characterisation?.kinematic_viscosity_40_celsius_square_millimetres_per_second) },
+  { field: 'kv100', label: 'KV100', unit: 'mm²/s', of: (each) => rounded(each.characterisation?.kinematic_viscosity_100_celsius_square_millimetres_per_second) },
+  { field: 'vi', label: 'VI', of: (each) => rounded(each.characterisation?.viscosity_index) },
+  { field: 'density', label: 'Density, 15 °C', unit: 'kg/m³', of: (each) => rounded(each.characterisation?.density_15_celsius_kilograms_per_cubic_metre) },
+];
+
 function FluidList() {
-  const { value, error, reload } = useLubricants();
+  const { query } = useStore(place);
+  const search = query.get('q') ?? '';
+  const order = query.get('sort') ?? '';
+  const field = order.replace(/^-/, '');
+  const list = useLoaded((signal) => get<ListLubricantsResponse>(url('lubricants', {
+    page_size: MOST_LISTED, read_mask: LISTED, filter: filterOf(search), order_by: order === '' ? undefined : order.startsWith('-') ? `${field} desc` : field,
+  }), signal), `${search} ${order}`);
   const [chosen, setChosen] = useState<string[]>([]);
   const toggle = (id: string) => setChosen((old) => (old.includes(id) ? old.filter((each) => each !== id) : [...old, id]));
+  const violation = list.error instanceof ApiError ? list.error.violations.find((each) => each.field === 'filter') : undefined;
+  const fluids = list.value?.lubricants ?? [];
+  const header = (name: string, label: string, unit?: string) => {
+    const sort = field !== name ? undefined : order.startsWith('-') ? 'descending' : 'ascending';
+    return (
+      <th key={name} class={name === 'name' ? '' : 'number'} aria-sort={sort}>
+        <button class="sort" onClick={() => set({ sort: sort === 'ascending' ? `-${name}` : name })}>
+          {label} <span aria-hidden="true">{{ ascending: '▲', descending: '▼', none: '' }[sort ?? 'none']}</span>
+        </button>
+        {unit && <small>{unit}</small>}
+      </th>
+    );
+  };
   return (
     <>
       <div class="heading">
@@ -36,30 +73,33 @@ function FluidList() {
           <a class="button" href={address('/fluids/new')}>Enter an oil</a>
         </div>
       </div>
-      {error !== undefined && <Failure error={error} onRetry={reload} />}
-      <div class="scroll" tabIndex={0} role="region" aria-label="Fluids">
+      <label class="search">Search names, or state a filter
+        <Entry type="search" value={search} placeholder="PAO, or kv100 > 14 AND vi > 150" spellcheck={false} aria-invalid={violation !== undefined}
+          onChange={(event) => set({ q: event.currentTarget.value.trim() || undefined })} />
+        {violation && <span class="problem" role="alert">{violation.description}</span>}
+      </label>
+      {list.error !== undefined && !violation && <Failure error={list.error} onRetry={list.reload} />}
+      {list.value && !list.isStale && fluids.length === 0 && <p class="muted">No fluid is like that. <button onClick={() => set({ q: undefined })}>Show all fluids</button></p>}
+      <div class={`scroll ${list.isStale ? 'stale' : ''}`} tabIndex={0} role="region" aria-label="Fluids">
         <table>
           <thead>
             <tr>
-              <th><span class="hidden">Choose</span></th><th>Name</th><th>Grade</th>
-              <th class="number">KV40 <small>mm²/s</small></th><th class="number">KV100 <small>mm²/s</small></th>
-              <th class="number">VI</th><th class="number">Density, 15 °C <small>kg/m³</small></th><th class="number">Revision</th>
+              <th><span class="hidden">Choose</span></th>{header('name', 'Name')}<th>Grade</th>
+              {COLUMNS.map((each) => header(each.field, each.label, each.unit))}
+              <th>Parameters are</th><th class="number">Revision</th>
             </tr>
           </thead>
           <tbody>
-            {(value ?? []).map((each) => {
+            {fluids.map((each) => {
               const id = idOf(each.name);
               const [title, note] = (each.display_name || id).split(': ');
-              const figures = each.characterisation ?? {};
               return (
                 <tr key={id}>
                   <td><input type="checkbox" aria-label={`Choose ${title}`} checked={chosen.includes(id)} onChange={() => toggle(id)} /></td>
                   <td><a href={address(`/fluids/${id}`)}>{title}</a><small>{note ?? ''}</small></td>
-                  <td>{figures.sae_j306_grade || <span class="muted">–</span>}</td>
-                  <td class="number">{rounded(figures.kinematic_viscosity_40_celsius_square_millimetres_per_second)}</td>
-                  <td class="number">{rounded(figures.kinematic_viscosity_100_celsius_square_millimetres_per_second)}</td>
-                  <td class="number">{rounded(figures.viscosity_index)}</td>
-                  <td class="number">{rounded(figures.density_15_celsius_kilograms_per_cubic_metre)}</td>
+                  <td>{each.characterisation?.sae_j306_grade || <span class="muted">–</span>}</td>
+                  {COLUMNS.map((column) => <td key={column.field} class="number">{column.of(each)}</td>)}
+                  <td class="muted">{originsOf(each)}</td>
                   <td class="number">{each.revision}</td>
                 </tr>
               );
@@ -67,6 +107,7 @@ function FluidList() {
           </tbody>
         </table>
       </div>
+      {list.value?.next_page_token && <p class="small">The list holds {MOST_LISTED} fluids: a search finds the others.</p>}
     </>
   );
 }
@@ -226,7 +267,7 @@ function FluidForm({ lubricant }: { lubricant?: Lubricant }) {
         {field.label}{unit.symbol && `, ${unit.symbol}`}
         <input value={textOf(field)} inputMode="decimal" aria-invalid={violation !== undefined} aria-describedby={note}
           onInput={(event) => { const text = event.currentTarget.value; setTexts((old) => ({ ...old, [field.path]: text })); }} />
-        <span id={note} class={violation ? 'problem' : 'small'}>{violation?.description ?? rangeText(constraint, unit)}</span>
+        <span id={note} class={violation ? 'problem' : 'small'}>{violation ? atField(violation.description) : rangeText(constraint, unit)}</span>
       </label>
     );
   };
