@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <map>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "server/application/table_columns.h"
 #include "server/contract/check_message.h"
 #include "server/contract/constraints.h"
+#include "server/contract/resource_names.h"
 #include "server/simulation/campaign_columns.h"
 #include "server/simulation/candidate_figures.h"
 #include "server/simulation/candidate_uncertainty.h"
@@ -27,7 +29,6 @@
 namespace tribodyn::server {
 namespace {
 
-constexpr char kUsualFigure[] = "inefficiency_energy_mean_percent";
 constexpr char kNames[] = "name";  // attribute with the candidates' names
 constexpr char kUncertaintyEnd[] = ".uncertainty";
 constexpr int kDefaultCount = 20;
@@ -35,7 +36,7 @@ constexpr double kDefaultProbability = 0.95;  // of confidence and coverage
 constexpr int kMaximumFrontAnswer = 10'000;
 constexpr std::int64_t kBlockRows = 65'536;  // rows of a column in memory: 0.5 MB
 
-// Numbers of columns (campaign_columns.h).
+// Numbers of columns (campaign_columns.h), but for the first one of the axle.
 constexpr int kRefusalNumber = 0;
 constexpr int kFirstWithError = 1, kLeastTransmissionError = 6, kMostTransmissionError = 7;
 constexpr int kRelativeError = 11;
@@ -46,30 +47,53 @@ static_assert(kCampaignColumns[kMostTransmissionError] ==
               "dynamic_transmission_error_maximum_metres");
 static_assert(kCampaignColumns[kRelativeError] == "estimated_relative_error");
 
-/// A figure of candidates, found in the campaign.
+/// A campaign that has figures of the candidates.
+struct FigureSource {
+  FigureSource(Application& application, StoredCampaign campaign, const CallContext& call)
+      : stored(std::move(campaign)), columns(application, stored, call) {}
+  const StoredCampaign stored;
+  TableColumns columns;
+  std::vector<double> weights;  ///< of its conditions
+};
+
+/// A figure of candidates, found in a campaign.
 struct FoundFigure {
   TableColumn column;
   v1::CandidateFigure::Aggregate aggregate = v1::CandidateFigure::MEAN;
+  FigureSource* source = nullptr;
 };
 
-/// Reads figures of the candidates of a campaign.
+/// Returns true if two campaigns have the same candidates, in the same order.
+bool have_equal_candidates(FigureSource& one, FigureSource& other) {
+  const auto candidates = [](FigureSource& source) {
+    v1::Campaign out = source.columns.table();
+    out.clear_candidate_attributes();
+    out.set_lubricant_revision(source.stored.lubricant_revision);
+    return out.SerializeAsString();
+  };
+  return one.stored.candidates == other.stored.candidates && candidates(one) == candidates(other);
+}
+
+/// Reads figures of the candidates of a campaign, and of others with the same candidates.
 class DecisionTable {
  public:
   DecisionTable(Application& application, const StoredCampaign& stored, const CallContext& call)
-      : application_(application),
-        stored_(stored),
-        call_(call),
-        columns_(application, stored, call) {}
+      : application_(application), call_(call), own_(application, stored, call) {}
 
   /// Takes the weights of a request. Adds a violation if their number is wrong.
   void set_weights(const google::protobuf::RepeatedField<double>& stated, Violations& violations) {
-    weights_ = condition_weights(stated, columns_.request(), violations);
+    own_.weights = condition_weights(stated, own_.columns.request(), violations);
   }
 
-  /// Adds a figure to those that read_all() reads; a violation if there is no such column.
+  /// Adds a figure to those that read_all() reads; a violation if there is no such campaign or
+  /// column.
   void add(const v1::CandidateFigure& figure, const std::string& path, Violations& violations) {
-    const std::string& name = figure.column().empty() ? kUsualFigure : figure.column();
-    auto column = columns_.find(name);
+    FigureSource* source = find_source(figure.campaign(), path + ".campaign", violations);
+    if (source == nullptr) return;
+    TableColumns& columns = source->columns;
+    const std::string name =
+        figure.column().empty() ? usual_figure(columns.request()) : figure.column();
+    auto column = columns.find(name);
     const bool is_figure =
         column &&
         (column->kind == TableColumn::Kind::kPerCandidate ||
@@ -78,10 +102,10 @@ class DecisionTable {
       violations.push_back(
           {path + ".column",
            column ? fmt::format("\"{}\" is no figure of candidates", plain_excerpt(name))
-                  : fmt::format("no such column here{}", meant_text(name, columns_.names()))});
+                  : fmt::format("no such column here{}", meant_text(name, columns.names()))});
       return;
     }
-    found_.push_back({std::move(*column), figure.aggregate()});
+    found_.push_back({std::move(*column), figure.aggregate(), source});
   }
   void add(const v1::CandidateObjective& objective, const std::string& path,
            Violations& violations) {
@@ -102,7 +126,9 @@ class DecisionTable {
   CandidateSelection read_all(
       const google::protobuf::RepeatedPtrField<v1::CandidateConstraint>& constraints) {
     // Read before the figures, because the campaign may run: rows written later count as missing.
-    const std::vector<bool> missing = missing_candidates();
+    std::vector<bool> missing(static_cast<std::size_t>(own_.stored.candidates), false);
+    add_missing(own_.stored, missing);
+    for (FigureSource& each : others_) add_missing(each.stored, missing);
     for (const FoundFigure& each : found_) figures_.push_back(read(each));
     return select_candidates(missing, figures_, constraints);
   }
@@ -110,14 +136,14 @@ class DecisionTable {
   /// The figures of read_all(), in the order in which they were added.
   const std::vector<CandidateValues>& figures() const { return figures_; }
   const FoundFigure& found(std::size_t figure) const { return found_[figure]; }
-  ConditionAggregate aggregate(const FoundFigure& figure) const {
-    return {figure.aggregate, weights_};
+  static ConditionAggregate aggregate(const FoundFigure& figure) {
+    return {figure.aggregate, figure.source->weights};
   }
-  TableColumns& columns() { return columns_; }
+  TableColumns& columns() { return own_.columns; }
 
   /// Returns the texts of an attribute; nullopt if it has none or does not exist.
   const google::protobuf::RepeatedPtrField<std::string>* texts(const std::string& attribute) {
-    for (const v1::CandidateAttribute& each : columns_.table().candidate_attributes()) {
+    for (const v1::CandidateAttribute& each : own_.columns.table().candidate_attributes()) {
       if (each.name() == attribute && !each.texts().empty()) return &each.texts();
     }
     return nullptr;
@@ -128,49 +154,83 @@ class DecisionTable {
   }
 
  private:
+  /// Returns the campaign of this name, own if it is empty. Returns null and adds a violation if
+  /// it does not exist or has other candidates.
+  FigureSource* find_source(const std::string& name, const std::string& path,
+                            Violations& violations) {
+    if (name.empty()) return &own_;
+    const auto split = split_name(name);
+    if (!split || (name.starts_with("projects/") && split->project != call_.project)) {
+      violations.push_back({path, fmt::format("\"{}\"; allowed: a campaign of the project {}",
+                                              plain_excerpt(name), call_.project)});
+      return nullptr;
+    }
+    auto stored = find_campaign(application_, std::string(split->relative), call_);
+    if (!stored.ok()) {
+      violations.push_back({path, plain_excerpt(name) + " does not exist"});
+      return nullptr;
+    }
+    if (stored.message().id == own_.stored.id) return &own_;
+    for (FigureSource& each : others_) {
+      if (each.stored.id == stored.message().id) return &each;
+    }
+    FigureSource& out = others_.emplace_back(application_, std::move(stored.message()), call_);
+    if (!have_equal_candidates(own_, out)) {
+      violations.push_back(
+          {path, fmt::format("the candidates of {} are not those of {}; allowed: a campaign with "
+                             "the same lubricant and equal candidate_columns",
+                             name_of(out.stored), name_of(own_.stored))});
+    }
+    Violations none;
+    out.weights = condition_weights({}, out.columns.request(), none);
+    return &out;
+  }
+
   /// Calls visit(candidate, count) for all candidates, some at a time.
   template <class Visit>
-  void visit_blocks(const Visit& visit) const {
-    const std::int64_t most = std::max<std::int64_t>(1, kBlockRows / stored_.conditions);
-    for (std::int64_t first = 0; first < stored_.candidates; first += most) {
-      visit(first, std::min<std::int64_t>(most, stored_.candidates - first));
+  static void visit_blocks(const StoredCampaign& stored, const Visit& visit) {
+    const std::int64_t most = std::max<std::int64_t>(1, kBlockRows / stored.conditions);
+    for (std::int64_t first = 0; first < stored.candidates; first += most) {
+      visit(first, std::min<std::int64_t>(most, stored.candidates - first));
     }
   }
-  std::vector<double> rows(int column, std::int64_t candidate, std::int64_t count) {
+  std::vector<double> rows(const StoredCampaign& stored, int column, std::int64_t candidate,
+                           std::int64_t count) {
     std::vector<double> out(
-        static_cast<std::size_t>(count * stored_.conditions),
+        static_cast<std::size_t>(count * stored.conditions),
         column == kRefusalNumber ? kNotComputed : std::numeric_limits<double>::quiet_NaN());
-    application_.store.read_campaign(stored_.id, column, candidate * stored_.conditions, out,
+    application_.store.read_campaign(stored.id, column, candidate * stored.conditions, out,
                                      call_.limits);
     return out;
   }
 
-  std::vector<bool> missing_candidates() {
-    std::vector<bool> out;
-    const auto conditions = static_cast<std::size_t>(stored_.conditions);
-    visit_blocks([&](std::int64_t first, std::int64_t count) {
-      const std::vector<double> numbers = rows(kRefusalNumber, first, count);
-      for (auto at = numbers.begin(); at != numbers.end(); at += stored_.conditions) {
-        out.push_back(std::count(at, at + static_cast<std::ptrdiff_t>(conditions), kNotComputed) >
-                      0);
+  /// Marks the candidates of which a row is not computed.
+  void add_missing(const StoredCampaign& stored, std::vector<bool>& missing) {
+    visit_blocks(stored, [&](std::int64_t first, std::int64_t count) {
+      const std::vector<double> numbers = rows(stored, kRefusalNumber, first, count);
+      auto candidate = static_cast<std::size_t>(first);
+      for (auto at = numbers.begin(); at != numbers.end(); at += stored.conditions, ++candidate) {
+        if (std::count(at, at + stored.conditions, kNotComputed) > 0) missing[candidate] = true;
       }
     });
-    return out;
   }
 
   CandidateValues read(const FoundFigure& figure) {
     if (figure.column.kind == TableColumn::Kind::kPerCandidate) return {figure.column.values, {}};
+    const StoredCampaign& stored = figure.source->stored;
     const int column = figure.column.number;
-    const ConditionAggregate aggregate = this->aggregate(figure);
-    const auto conditions = static_cast<std::size_t>(stored_.conditions);
+    const bool has_errors = !figure.source->columns.request().has_rig() &&
+                            column >= kFirstWithError && column <= kMostTransmissionError;
+    const ConditionAggregate aggregate = DecisionTable::aggregate(figure);
+    const auto conditions = static_cast<std::size_t>(stored.conditions);
     CandidateValues out;
-    visit_blocks([&](std::int64_t first, std::int64_t count) {
-      const std::vector<double> values = rows(column, first, count);
+    visit_blocks(stored, [&](std::int64_t first, std::int64_t count) {
+      const std::vector<double> values = rows(stored, column, first, count);
       for (std::size_t at = 0; at < values.size(); at += conditions) {
         out.values.push_back(aggregate.value({values.data() + at, conditions}));
       }
-      if (column < kFirstWithError || column > kMostTransmissionError) return;
-      const std::vector<double> errors = solver_errors(column, values, first, count);
+      if (!has_errors) return;
+      const std::vector<double> errors = solver_errors(stored, column, values, first, count);
       for (std::size_t at = 0; at < errors.size(); at += conditions) {
         out.solver_errors.push_back(aggregate.error({errors.data() + at, conditions}));
       }
@@ -179,12 +239,15 @@ class DecisionTable {
   }
 
   /// Returns bounds of the solver's errors of some rows of a column.
-  std::vector<double> solver_errors(int column, const std::vector<double>& values,
-                                    std::int64_t first, std::int64_t count) {
-    std::vector<double> out = rows(kRelativeError, first, count);
+  std::vector<double> solver_errors(const StoredCampaign& stored, int column,
+                                    const std::vector<double>& values, std::int64_t first,
+                                    std::int64_t count) {
+    std::vector<double> out = rows(stored, kRelativeError, first, count);
     std::vector<double> other;  // the estimate is relative to the largest transmission error
-    if (column == kLeastTransmissionError) other = rows(kMostTransmissionError, first, count);
-    if (column == kMostTransmissionError) other = rows(kLeastTransmissionError, first, count);
+    if (column == kLeastTransmissionError)
+      other = rows(stored, kMostTransmissionError, first, count);
+    if (column == kMostTransmissionError)
+      other = rows(stored, kLeastTransmissionError, first, count);
     for (std::size_t i = 0; i < out.size(); ++i) {
       const double scale = std::max(std::abs(values[i]), other.empty() ? 0 : std::abs(other[i]));
       out[i] = std::isfinite(out[i]) ? out[i] * scale : 0;
@@ -193,10 +256,9 @@ class DecisionTable {
   }
 
   Application& application_;
-  const StoredCampaign& stored_;
   const CallContext& call_;
-  TableColumns columns_;
-  std::vector<double> weights_;
+  FigureSource own_;
+  std::deque<FigureSource> others_;
   std::vector<FoundFigure> found_;
   std::vector<CandidateValues> figures_;
 };
@@ -256,12 +318,12 @@ std::vector<std::optional<v1::CandidateComparison>> comparisons_of(
 
 /// Compares the best candidates with the first one, as many as the points allow. Throws Cancelled
 /// and Refusal.
-Comparisons compare_best(Application& application, const StoredCampaign& stored,
-                         const v1::RankCandidatesRequest& request,
+Comparisons compare_best(Application& application, const v1::RankCandidatesRequest& request,
                          const std::vector<std::size_t>& best, const DecisionTable& table,
                          const CallContext& call) {
   Comparisons out;
   const FoundFigure& figure = table.found(0);
+  const StoredCampaign& stored = figure.source->stored;
   const bool is_computed = figure.column.kind == TableColumn::Kind::kStored;
   std::optional<CampaignInputs> inputs;
   if (is_computed && !best.empty()) {
@@ -282,7 +344,7 @@ Comparisons compare_best(Application& application, const StoredCampaign& stored,
                                           best.begin() + static_cast<std::ptrdiff_t>(count));
   std::vector<std::vector<double>> effects(count);
   if (!out.parameters.empty() && count > 0) {
-    const ConditionAggregate aggregate = table.aggregate(figure);
+    const ConditionAggregate aggregate = DecisionTable::aggregate(figure);
     const EffectsStudy study{out.parameters, compared, figure.column.number, aggregate};
     effects = study.compute(std::move(*inputs), *application.gear_sets,
                             [&call] { return call.limits.are_over(); });
@@ -405,8 +467,7 @@ Outcome<v1::RankCandidatesResponse> rank_candidates(Application& application,
   best.resize(std::min(best.size(), static_cast<std::size_t>(
                                         request.count() == 0 ? kDefaultCount : request.count())));
   try {
-    const Comparisons comparisons =
-        compare_best(application, stored.message(), request, best, table, call);
+    const Comparisons comparisons = compare_best(application, request, best, table, call);
     v1::RankCandidatesResponse out;
     out.set_ranked(static_cast<int>(selection.candidates.size()));
     set_numbers(selection, out);

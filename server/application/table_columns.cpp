@@ -4,6 +4,7 @@
 
 #include "server/simulation/campaign_candidates.h"
 #include "server/simulation/campaign_columns.h"
+#include "server/simulation/campaign_rig.h"
 #include "server/simulation/solver_defaults.h"
 
 namespace tribodyn::server {
@@ -13,9 +14,26 @@ std::vector<double> values_of(const google::protobuf::RepeatedField<double>& val
   return {values.begin(), values.end()};
 }
 
+/// Returns a column of each field of the conditions of a rig.
+std::vector<TableColumn> rig_condition_columns(const v1::Campaign& request) {
+  using enum TableColumn::Kind;
+  TableColumn load{"load_newtons", kPerCondition},
+      speed{"entrainment_speed_metres_per_second", kPerCondition},
+      slide{"slide_roll_ratio_percent", kPerCondition},
+      supply{"supply_temperature_celsius", kPerCondition};
+  for (const v1::RigCondition& each : rig_conditions(request)) {
+    load.values.push_back(each.load_newtons());
+    speed.values.push_back(each.entrainment_speed_metres_per_second());
+    slide.values.push_back(each.slide_roll_ratio_percent());
+    supply.values.push_back(each.supply_temperature_celsius());
+  }
+  return {std::move(load), std::move(speed), std::move(slide), std::move(supply)};
+}
+
 /// Returns a column of each field of the conditions, defaults written out.
 std::vector<TableColumn> condition_columns(const v1::Campaign& request) {
   using enum TableColumn::Kind;
+  if (request.has_rig()) return rig_condition_columns(request);
   TableColumn speed{"speed_kilometres_per_hour", kPerCondition},
       ascent{"ascent_angle_degrees", kPerCondition},
       sump{"sump_temperature_celsius", kPerCondition},
@@ -84,7 +102,8 @@ const v1::Campaign& TableColumns::table() {
   if (!table_) {
     table_.emplace();
     table_->ParseFromString(application_.store.candidate_table(stored_.id, call_.limits));
-    keep_first_candidates(stored_.candidates, *table_);  // others may have been added since it was read
+    keep_first_candidates(stored_.candidates,
+                          *table_);  // others may have been added since it was read
   }
   return *table_;
 }

@@ -12,6 +12,7 @@
 #include "core/refusal.h"
 #include "core/version.h"
 #include "server/simulation/campaign_columns.h"
+#include "server/simulation/campaign_scene.h"
 #include "server/simulation/compute.h"
 #include "server/simulation/result_key.h"
 #include "server/storage/life_cycle.h"
@@ -59,12 +60,11 @@ std::deque<RowRange> missing_candidates(const std::vector<RowRange>& tiles, std:
   return out;
 }
 
-/// A point of a candidate whose computation no process has survived.
-EvaluatedPoint lost_point() {
-  EvaluatedPoint out;
-  out.refusal_reason = "WORKER_LOST";
-  out.refusal_message = "the server ended " + std::to_string(kMaximumLostAttempts) +
-                        " times while it computed this candidate";
+/// A row of a candidate whose computation no process has survived.
+CampaignRow lost_row() {
+  CampaignRow out;
+  out.refuse("WORKER_LOST", "the server ended " + std::to_string(kMaximumLostAttempts) +
+                                " times while it computed this candidate");
   return out;
 }
 
@@ -73,11 +73,11 @@ EvaluatedPoint lost_point() {
 /// Rows that are computed and not written yet.
 struct CampaignJobs::Tile {
   RowRange candidates;
-  int lost_attempts = 0;               ///< as in CampaignSuspect
-  bool is_noted = false;               ///< as a suspect that is begun
-  std::int64_t done = 0;               ///< candidates whose rows are in `columns`
-  std::size_t group = 0;               ///< next group of conditions of the candidate after those
-  std::vector<EvaluatedPoint> points;  ///< of that candidate, by condition
+  int lost_attempts = 0;          ///< as in CampaignSuspect
+  bool is_noted = false;          ///< as a suspect that is begun
+  std::int64_t done = 0;          ///< candidates whose rows are in `columns`
+  std::size_t group = 0;          ///< next group of conditions of the candidate after those
+  std::vector<CampaignRow> rows;  ///< of that candidate, by condition
   std::vector<std::vector<double>> columns;
   std::map<int, CampaignRefusal> refusals;  ///< by number
   std::int64_t refused = 0;
@@ -95,7 +95,7 @@ struct CampaignJobs::Part {
   std::function<double()> used_seconds;  ///< by the present slice, without other jobs
   std::optional<Tile> tile;
   std::shared_ptr<const CampaignInputs> inputs;  ///< with which the tile was taken
-  std::unique_ptr<CandidateScene> candidate;     ///< of these inputs
+  std::unique_ptr<CampaignScene> candidate;      ///< of these inputs
 };
 
 /// A campaign that is RUNNING, or whose last slices end.
@@ -485,8 +485,7 @@ bool CampaignJobs::compute_slice(Running& running, Part& part, PreparedGearSets&
   std::shared_ptr<PreparedGearSet> gear_set;
   const auto give_back = [&] {
     if (!gear_set) return;
-    gear_sets.give_back(part.inputs->points.base.gear_set, part.candidate->scene().options,
-                        std::move(gear_set));
+    part.candidate->give_back(gear_sets, std::move(gear_set));
   };
   for (;;) {
     const bool is_halted = [&] {
@@ -497,7 +496,7 @@ bool CampaignJobs::compute_slice(Running& running, Part& part, PreparedGearSets&
     if (is_halted || !part.goes_on()) break;
     if (!part.tile && !take_tile(running, part)) break;
     if (!gear_set) {
-      gear_set = gear_sets.take(part.inputs->points.base.gear_set, part.candidate->scene());
+      gear_set = part.candidate->take_gear_set(gear_sets);
     }
     try {
       compute_unit(running, part, gear_set);
@@ -520,8 +519,7 @@ bool CampaignJobs::compute_slice(Running& running, Part& part, PreparedGearSets&
 void CampaignJobs::use_inputs(Part& part, const std::shared_ptr<const CampaignInputs>& inputs) {
   part.candidate.reset();  // it refers to the inputs before
   part.inputs = inputs;
-  part.candidate =
-      std::make_unique<CandidateScene>(inputs->points, [&part] { return part.goes_on(); });
+  part.candidate = campaign_scene(*inputs, [&part] { return part.goes_on(); });
 }
 
 /// Takes the next candidates for a tile. Returns false if the part finds none. Throws StoreError;
@@ -542,7 +540,7 @@ bool CampaignJobs::take_tile(Running& running, Part& part) {
     if (part.inputs != running.inputs) use_inputs(part, running.inputs);
     Tile& tile = part.tile.emplace(*candidates);
     const auto conditions = static_cast<std::size_t>(part.inputs->points.conditions);
-    tile.points.resize(conditions);
+    tile.rows.resize(conditions);
     tile.columns.resize(part.inputs->columns);
     for (auto& each : tile.columns) {
       each.reserve(static_cast<std::size_t>(tile.candidates.count) * conditions);
@@ -606,19 +604,19 @@ void CampaignJobs::return_rows(Running& running, const Tile& tile) {
 void CampaignJobs::compute_unit(Running& running, Part& part,
                                 const std::shared_ptr<PreparedGearSet>& gear_set) {
   Tile& tile = *part.tile;
-  const PointEvaluation& points = part.inputs->points;
+  const std::size_t groups = part.candidate->groups();
   const double before = part.used_seconds();
   if (tile.lost_attempts >= kMaximumLostAttempts) {
-    std::fill(tile.points.begin(), tile.points.end(), lost_point());
-    tile.group = points.groups.size();
+    std::fill(tile.rows.begin(), tile.rows.end(), lost_row());
+    tile.group = groups;
   } else {
     if (tile.group == 0) {
       part.candidate->set_candidate(static_cast<int>(tile.candidates.first + tile.done));
     }
-    part.candidate->evaluate(points.groups[tile.group], gear_set, tile.points);
+    part.candidate->evaluate(tile.group, gear_set, tile.rows);
     ++tile.group;
   }
-  if (tile.group == points.groups.size()) {
+  if (tile.group == groups) {
     tile.group = 0;
     add_rows(running, part);
     ++tile.done;
@@ -629,19 +627,18 @@ void CampaignJobs::compute_unit(Running& running, Part& part,
 /// Adds the rows of the present candidate to the columns.
 void CampaignJobs::add_rows(Running& running, Part& part) {
   Tile& tile = *part.tile;
-  for (const EvaluatedPoint& point : tile.points) {
-    const int refusal = refusal_number(running, point, tile);
-    add_campaign_row(part.inputs->points, point, refusal, tile.columns);
+  for (const CampaignRow& row : tile.rows) {
+    add_campaign_row(row, refusal_number(running, row, tile), tile.columns);
   }
 }
 
-/// Returns the number of the refusal of a point; 0 if it has figures.
-int CampaignJobs::refusal_number(Running& running, const EvaluatedPoint& point, Tile& tile) {
-  if (point.figures) return 0;
+/// Returns the number of the refusal of a row; 0 if it has figures.
+int CampaignJobs::refusal_number(Running& running, const CampaignRow& row, Tile& tile) {
+  if (!row.figures.empty()) return 0;
   ++tile.refused;
   const std::lock_guard lock(running.mutex);
   auto& numbers = running.refusal_numbers;
-  std::pair<std::string, std::string> key(point.refusal_reason, point.refusal_message);
+  std::pair<std::string, std::string> key(row.refusal_reason, row.refusal_message);
   if (!numbers.contains(key) && numbers.size() >= kMostSentences) key.second = kFurtherSentences;
   const int number = numbers.emplace(key, static_cast<int>(numbers.size()) + 1).first->second;
   tile.refusals[number] = {number, key.first, key.second};

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "server/scheduling/scheduler.h"
+#include "server/simulation/campaign_columns.h"
 #include "server/simulation/campaign_inputs.h"
 #include "server/simulation/prepared_gear_sets.h"
 #include "server/storage/store.h"
@@ -99,7 +100,7 @@ class CampaignJobs {
   bool compute_slice(Running& running, Part& part, PreparedGearSets& gear_sets);
   void compute_unit(Running& running, Part& part, const std::shared_ptr<PreparedGearSet>& gear_set);
   void add_rows(Running& running, Part& part);
-  int refusal_number(Running& running, const EvaluatedPoint& point, Tile& tile);
+  int refusal_number(Running& running, const CampaignRow& row, Tile& tile);
   void write(Running& running, Part& part);
   void fail(std::int64_t id, const std::string& reason, const std::string& message);
 

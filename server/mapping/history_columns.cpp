@@ -111,6 +111,7 @@ std::string_view history_column_unit(std::string_view name) {
       {"_joules", "J"},
       {"_kilometres_per_hour", "km/h"},
       {"_kelvin", "K"},
+      {"_celsius", "C"},
       {"_pascals", "Pa"},
   };
   const std::string_view quantity = name.substr(0, name.rfind("_flank_"));

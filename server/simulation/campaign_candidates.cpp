@@ -16,6 +16,7 @@
 #include "server/contract/check_message.h"
 #include "server/contract/constraints.h"
 #include "server/resources/provenance.h"
+#include "server/simulation/campaign_rig.h"
 #include "server/simulation/candidate_uncertainty.h"
 #include "server/simulation/point_evaluation.h"
 
@@ -43,7 +44,8 @@ struct PlacedFactor {
   }
 };
 
-/// Returns the base of a design. Adds violations if it does not exist.
+/// Returns the base of a design; the smooth specimens of a rig have no surface. Adds violations if
+/// it does not exist.
 SimulationInputs base_of_design(const v1::Campaign& request, const ResourceLookup& lookup,
                                 Violations& violations) {
   SimulationInputs out;
@@ -52,6 +54,7 @@ SimulationInputs base_of_design(const v1::Campaign& request, const ResourceLooku
                                                 "lubricant", violations)) {
     out.lubricant = found->resource;
   }
+  if (has_smooth_specimens(request)) return out;
   if (auto found = find_resource<v1::Surface>(lookup, surface, kSurfaces, "surface", violations)) {
     out.surface = found->resource;
   }
@@ -89,7 +92,8 @@ void read_range(const v1::DesignFactor& stated, const std::string& path, PlacedF
 /// Sets the median and the standard uncertainty. Adds a violation if the base states none.
 void read_spread(const SimulationInputs& base, const v1::Campaign& request, const std::string& path,
                  PlacedFactor& out, Violations& violations) {
-  if (!base.lubricant || !base.surface) return;  // complained about already
+  const bool has_surface = base.surface || has_smooth_specimens(request);
+  if (!base.lubricant || !has_surface) return;  // complained about already
   const std::optional<double> value = base_value(*out.field, base);
   out.standard_uncertainty = value ? stated_by_base(out.parameter, *out.field, base) : 0;
   out.median = value.value_or(0);
@@ -118,6 +122,10 @@ std::vector<PlacedFactor> stated_factors(const v1::Campaign& request, const Simu
     factor.levels = each.levels();
     if (factor.field == nullptr) {
       violations.push_back({path + ".parameter", unknown_parameter_text(each.parameter())});
+      continue;
+    }
+    if (std::string text = no_effect_text(request, each.parameter()); !text.empty()) {
+      violations.push_back({path + ".parameter", std::move(text)});
       continue;
     }
     if (!known.insert(each.parameter()).second) {
@@ -154,7 +162,7 @@ std::vector<PlacedFactor> stated_factors(const v1::Campaign& request, const Simu
 std::vector<PlacedFactor> uncertain_factors(const v1::Campaign& request,
                                             const SimulationInputs& base, Violations& violations) {
   std::vector<PlacedFactor> out;
-  if (!base.lubricant || !base.surface) return out;
+  if (!base.lubricant || (!base.surface && !has_smooth_specimens(request))) return out;
   for (const std::string& parameter : candidate_parameter_names()) {
     PlacedFactor factor{parameter, find_candidate_parameter(parameter), {}};
     const std::optional<double> value = base_value(*factor.field, base);

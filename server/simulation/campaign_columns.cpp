@@ -1,7 +1,7 @@
 #include "server/simulation/campaign_columns.h"
 
 #include <limits>
-#include <span>
+#include <utility>
 
 #include "server/mapping/from_core.h"
 
@@ -9,47 +9,39 @@ namespace tribodyn::server {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr char kUsualAxleFigure[] = "inefficiency_energy_mean_percent";
 
-std::array<double, kCampaignColumns.size()> figures_of(const EvaluatedPoint& point, int refusal) {
-  std::array<double, kCampaignColumns.size()> out;
-  out.fill(kNone);
-  out[0] = refusal;
-  if (!point.figures) return out;
-  const PointFigures& figures = *point.figures;
-  return {static_cast<double>(refusal),
-          figures.pinion_torque,
-          figures.wheel_torque,
-          figures.inefficiency_rms.value_or(kNone),
-          figures.inefficiency_energy_mean.value_or(kNone),
-          figures.mesh_loss_power,
-          figures.dte_minimum,
-          figures.dte_maximum,
-          figures.contact_loss ? 1.0 : 0.0,
-          figures.settled ? 1.0 : 0.0,
-          static_cast<double>(figures.period_in_mesh_cycles),
-          figures.estimated_relative_error.value_or(kNone),
-          static_cast<double>(to_message(figures.model))};
+void append_axle_figures(const PointFigures& figures, std::vector<double>& out) {
+  out.insert(out.end(),
+             {figures.pinion_torque, figures.wheel_torque, figures.inefficiency_rms.value_or(kNone),
+              figures.inefficiency_energy_mean.value_or(kNone), figures.mesh_loss_power,
+              figures.dte_minimum, figures.dte_maximum, figures.contact_loss ? 1.0 : 0.0,
+              figures.settled ? 1.0 : 0.0, static_cast<double>(figures.period_in_mesh_cycles),
+              figures.estimated_relative_error.value_or(kNone),
+              static_cast<double>(to_message(figures.model))});
 }
 
-std::array<double, kContactFigureColumns.size()> contact_figures_of(const EvaluatedPoint& point) {
-  std::array<double, kContactFigureColumns.size()> out;
-  out.fill(kNone);
-  if (!point.figures || !point.figures->contact) return out;
-  const ContactSummary& contact = *point.figures->contact;
-  return {contact.film_ratio_minimum,
-          contact.film_ratio_mean,
-          contact.contact_temperature_maximum,
-          contact.contact_temperature_mean,
-          contact.viscous_loss_power,
-          contact.boundary_loss_power,
-          contact.friction_coefficient_mean,
-          contact.pressure_maximum,
-          contact.flash_temperature_rise_maximum};
+void append_axle_contact(const PointFigures& figures, std::vector<double>& out) {
+  if (!figures.contact) {
+    out.insert(out.end(), kContactFigureColumns.size(), kNone);
+    return;
+  }
+  const ContactSummary& contact = *figures.contact;
+  out.insert(out.end(), {contact.film_ratio_minimum, contact.film_ratio_mean,
+                         contact.contact_temperature_maximum, contact.contact_temperature_mean,
+                         contact.viscous_loss_power, contact.boundary_loss_power,
+                         contact.friction_coefficient_mean, contact.pressure_maximum,
+                         contact.flash_temperature_rise_maximum});
 }
 
 }  // namespace
 
 std::vector<std::string> campaign_columns(const v1::Campaign& campaign) {
+  if (campaign.has_rig()) {
+    std::vector<std::string> of_rig{std::string(kCampaignColumns.front())};
+    for (const RigColumn& each : rig_columns()) of_rig.emplace_back(each.name);
+    return of_rig;
+  }
   std::vector<std::string> out(kCampaignColumns.begin(), kCampaignColumns.end());
   if (campaign.contact_figures()) {
     out.insert(out.end(), kContactFigureColumns.begin(), kContactFigureColumns.end());
@@ -67,26 +59,45 @@ std::vector<std::string> campaign_columns(const v1::Campaign& campaign) {
   return out;
 }
 
-void add_campaign_row(const PointEvaluation& evaluation, const EvaluatedPoint& point, int refusal,
-                      std::vector<std::vector<double>>& columns) {
-  std::size_t next = 0;
-  const auto add = [&](std::span<const double> values) {
-    for (const double value : values) columns[next++].push_back(value);
-  };
-  add(figures_of(point, refusal));
-  if (evaluation.with_contact) add(contact_figures_of(point));
-  if (evaluation.elasticities.empty()) return;
-  columns[next++].push_back(point.figures ? (point.is_one_sided ? 1.0 : 0.0) : kNone);
-  if (point.figures) return add(point.elasticities);
-  for (; next < columns.size(); ++next) columns[next].push_back(kNone);
+std::string usual_figure(const v1::Campaign& campaign) {
+  return campaign.has_rig() ? std::string(rig_columns().front().name) : kUsualAxleFigure;
 }
 
-double campaign_value(const PointEvaluation& evaluation, const EvaluatedPoint& point, int column) {
-  std::vector<std::vector<double>> row(
-      kCampaignColumns.size() + (evaluation.with_contact ? kContactFigureColumns.size() : 0) +
-      (evaluation.elasticities.empty() ? 0 : 1 + evaluation.elasticities.size()));
-  add_campaign_row(evaluation, point, 0, row);
-  return row[static_cast<std::size_t>(column)].front();
+void CampaignRow::set(const PointEvaluation& evaluation, const EvaluatedPoint& point) {
+  figures.clear();
+  refusal_reason = point.refusal_reason;
+  refusal_message = point.refusal_message;
+  if (!point.figures) return;
+  append_axle_figures(*point.figures, figures);
+  if (evaluation.with_contact) append_axle_contact(*point.figures, figures);
+  if (evaluation.elasticities.empty()) return;
+  figures.push_back(point.is_one_sided ? 1 : 0);
+  figures.insert(figures.end(), point.elasticities.begin(), point.elasticities.end());
+}
+
+void CampaignRow::set(const RigPoint& point) {
+  figures.clear();
+  refusal_reason.clear();
+  refusal_message.clear();
+  for (const RigColumn& each : rig_columns()) figures.push_back(point.*each.figure);
+}
+
+void CampaignRow::refuse(std::string reason, std::string message) {
+  figures.clear();
+  refusal_reason = std::move(reason);
+  refusal_message = std::move(message);
+}
+
+double CampaignRow::value(int column) const {
+  return figures.empty() ? kNone : figures[static_cast<std::size_t>(column - 1)];
+}
+
+void add_campaign_row(const CampaignRow& row, int refusal,
+                      std::vector<std::vector<double>>& columns) {
+  columns.front().push_back(refusal);
+  for (std::size_t i = 1; i < columns.size(); ++i) {
+    columns[i].push_back(row.value(static_cast<int>(i)));
+  }
 }
 
 }  // namespace tribodyn::server

@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "server/simulation/point_evaluation.h"
+#include "server/simulation/rig_evaluation.h"
 #include "tribodyn/v1/campaigns.pb.h"
 
 namespace tribodyn::server {
 
-/// The columns that every campaign has, by number. A number never changes its meaning: databases
-/// hold it. The names are those of EvaluatePointsResponse.
+/// The columns that every campaign of the axle has, by number. A number never changes its meaning:
+/// databases hold it. The names are those of EvaluatePointsResponse.
 inline constexpr std::array<std::string_view, 13> kCampaignColumns = {
     "refusal_number",  // 0: the row has figures; n: refusal n
     "pinion_torque_newton_metres",
@@ -42,16 +43,30 @@ inline constexpr std::array<std::string_view, 9> kContactFigureColumns = {
 inline constexpr double kNotComputed = -1;  ///< refusal_number of a row without a tile
 
 /// Returns the names of the columns that the store keeps of a campaign, by number: those above, and
-/// with elasticities elasticities_one_sided and "elasticity.{figure}.{parameter}", by figure.
+/// with elasticities elasticities_one_sided and "elasticity.{figure}.{parameter}", by figure. Of a
+/// rig: refusal_number and rig_columns(), whose numbers databases hold too.
 std::vector<std::string> campaign_columns(const v1::Campaign& campaign);
 
-/// Adds the row of a point to all columns of its campaign. `refusal` is the number of its refusal,
-/// 0 for a point with figures.
-void add_campaign_row(const PointEvaluation& evaluation, const EvaluatedPoint& point, int refusal,
-                      std::vector<std::vector<double>>& columns);
+/// Returns the column that is the figure of a candidate if a request names none.
+std::string usual_figure(const v1::Campaign& campaign);
 
-/// Returns the value of a column in the row of a point; NaN if the point has none. `column`: a
-/// number below that of all columns of the evaluation.
-double campaign_value(const PointEvaluation& evaluation, const EvaluatedPoint& point, int column);
+/// A candidate at one condition.
+struct CampaignRow {
+  std::vector<double> figures;  ///< columns 1, 2, ...; empty: refused
+  std::string refusal_reason;   ///< UPPER_SNAKE_CASE; empty if there are figures
+  std::string refusal_message;
+
+  /// Sets the figures of a point, or why it has none.
+  void set(const PointEvaluation& evaluation, const EvaluatedPoint& point);
+  void set(const RigPoint& point);
+  void refuse(std::string reason, std::string message);
+  /// Returns the value of a column but the first one; NaN if the row is refused.
+  double value(int column) const;
+};
+
+/// Adds a row to all columns of its campaign. `refusal` is the number of its refusal, 0 for a row
+/// with figures.
+void add_campaign_row(const CampaignRow& row, int refusal,
+                      std::vector<std::vector<double>>& columns);
 
 }  // namespace tribodyn::server

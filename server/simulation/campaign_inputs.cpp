@@ -34,15 +34,17 @@ v1::Campaign take_table(v1::Campaign& campaign) {
   return out;
 }
 
+/// Returns the points of a campaign, of a rig only the columns of its candidates.
 v1::EvaluatePointsRequest points_request(const v1::Campaign& requested, v1::Campaign& table) {
   v1::EvaluatePointsRequest out;
+  out.mutable_candidate_columns()->Swap(table.mutable_candidate_columns());
+  if (requested.has_rig()) return out;
   out.set_lubricant(requested.lubricant());
   out.set_gear_set(requested.gear_set());
   out.set_surface(requested.surface());
   out.set_vehicle(requested.vehicle());
   if (requested.has_model_options()) *out.mutable_model_options() = requested.model_options();
   out.set_tolerance(requested.tolerance());
-  out.mutable_candidate_columns()->Swap(table.mutable_candidate_columns());
   *out.mutable_conditions() = requested.conditions();
   out.set_contact_figures(requested.contact_figures());
   *out.mutable_elasticity_parameters() = requested.elasticity_parameters();
@@ -63,7 +65,8 @@ std::set<std::string, std::less<>> taken_names(const v1::Campaign& requested) {
   std::set<std::string, std::less<>> out{"candidate", "condition", "row"};
   for (std::string& each : campaign_columns(requested)) out.insert(std::move(each));
   for (std::string& each : candidate_parameter_names()) out.insert(std::move(each));
-  const auto& condition = *v1::PointCondition::descriptor();
+  const auto& condition =
+      requested.has_rig() ? *v1::RigCondition::descriptor() : *v1::PointCondition::descriptor();
   for (int i = 0; i < condition.field_count(); ++i) out.insert(condition.field(i)->name());
   return out;
 }
@@ -97,11 +100,12 @@ void check_attributes(const v1::Campaign& requested, const v1::Campaign& table,
 
 void check_weights(const v1::Campaign& campaign, Violations& violations) {
   const int weights = campaign.condition_weights_size();
-  if (weights == 0 || weights == campaign.conditions_size()) return;
+  const int conditions = condition_count(campaign);
+  if (weights == 0 || weights == conditions) return;
   violations.push_back(
       {"condition_weights", fmt::format("{} weights; allowed: none, or one for each of the {} "
                                         "conditions",
-                                        weights, campaign.conditions_size())});
+                                        weights, conditions)});
 }
 
 /// Checks what read_points() does not see.
@@ -145,10 +149,12 @@ void add_number(double value, Sha256& hash) {
 
 /// The hash differs from that of any simulation: figures of screening are right within the same
 /// tolerance, not the same to the last bit.
-std::string hash_of(const PointEvaluation& points) {
+std::string hash_of(const CampaignInputs& inputs) {
+  const PointEvaluation& points = inputs.points;
   Sha256 hash;
   hash.add("campaign by screening\n");
-  hash.add(canonical_inputs(points.base));
+  hash.add(inputs.rig ? canonical_rig(inputs.requested, *inputs.rig)
+                      : canonical_inputs(points.base));
   for (const PointEvaluation::Column& column : points.columns) {
     hash.add(column.field->full_name());
     for (const double value : column.values) add_number(value, hash);
@@ -340,14 +346,22 @@ std::optional<CampaignInputs> check_campaign(v1::Campaign request, const Resourc
   check_weights(out.requested, found);
   check_rest(out.requested, out.table, found);
   v1::EvaluatePointsRequest points = points_request(out.requested, out.table);
-  auto read =
-      read_points(points, lookup, found, kMaximumCampaignPoints, "in one campaign; make several");
+  const bool is_read = [&] {
+    if (out.requested.has_rig()) {
+      out.rig =
+          read_rig_points(out.requested, points, lookup, kMaximumCampaignPoints, found, out.points);
+      return out.rig.has_value();
+    }
+    auto read =
+        read_points(points, lookup, found, kMaximumCampaignPoints, "in one campaign; make several");
+    if (read) out.points = std::move(*read);
+    return read.has_value();
+  }();
   out.table.mutable_candidate_columns()->Swap(points.mutable_candidate_columns());
   for (Violation& each : found) {
     violations.push_back({join_path(path, each.field), std::move(each.description)});
   }
-  if (!read || !found.empty()) return std::nullopt;
-  out.points = std::move(*read);
+  if (!is_read || !found.empty()) return std::nullopt;
   out.columns = campaign_columns(out.requested).size();
   divide_groups(out.points);
   return out;
@@ -377,7 +391,7 @@ std::optional<CampaignInputs> read_campaign(v1::Campaign request, const Resource
     if (!fields.contains(each.field)) violations.push_back(std::move(each));
   }
   if (!found.empty()) return std::nullopt;
-  if (out) out->input_hash = hash_of(out->points);
+  if (out) out->input_hash = hash_of(*out);
   return out;
 }
 
@@ -418,7 +432,7 @@ std::optional<AppendedCandidates> read_appended(const StoredCampaign& stored,
   auto all = check_campaign(std::move(whole), accepted, "", violations);
   if (!all) return std::nullopt;
   out.all = std::move(*all);
-  out.all.input_hash = hash_of(out.all.points);
+  out.all.input_hash = hash_of(out.all);
   return out;
 }
 
@@ -434,6 +448,10 @@ CampaignInputs stored_campaign_inputs(const StoredCampaign& stored, const std::s
 }
 
 v1::CostEstimate estimate_cost(const CampaignInputs& inputs) {
+  if (inputs.rig) {
+    return estimate_rig_cost(inputs.points.candidates, inputs.rig->groups.size(),
+                             inputs.points.conditions);
+  }
   std::vector<double> speeds;
   for (const v1::PointCondition& each : inputs.requested.conditions()) {
     speeds.push_back(each.speed_kilometres_per_hour());

@@ -6,6 +6,7 @@
 #include "server/contract/resource_names.h"
 #include "server/contract/violations.h"
 #include "server/simulation/campaign_candidates.h"
+#include "server/simulation/campaign_rig.h"
 #include "server/simulation/point_evaluation.h"
 #include "server/storage/stored_campaign.h"
 #include "tribodyn/v1/campaigns.pb.h"
@@ -19,7 +20,8 @@ inline constexpr int kMaximumCampaignPoints = 20'000'000;
 struct CampaignInputs {
   v1::Campaign requested;  ///< what the client set, without candidates
   v1::Campaign table;      ///< columns, attributes and lubricants of candidates, and nothing else
-  PointEvaluation points;
+  PointEvaluation points;  ///< with `rig` only what read_rig_points() sets
+  std::optional<RigPoints> rig;
   std::size_t columns = 0;  ///< number of the columns that the store keeps
   std::string input_hash;   ///< SHA-256, 64 hex digits
 };

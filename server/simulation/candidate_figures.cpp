@@ -8,6 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "server/simulation/campaign_rig.h"
+
 namespace tribodyn::server {
 namespace {
 
@@ -20,7 +22,7 @@ bool keeps(const v1::CandidateConstraint& constraint, double value) {
 
 std::vector<double> condition_weights(const google::protobuf::RepeatedField<double>& stated,
                                       const v1::Campaign& campaign, Violations& violations) {
-  const int conditions = campaign.conditions_size();
+  const int conditions = condition_count(campaign);
   if (!stated.empty() && stated.size() != conditions) {
     violations.push_back({"condition_weights",
                           fmt::format("{} weights; allowed: one for each of the {} conditions, or "

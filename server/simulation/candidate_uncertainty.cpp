@@ -12,6 +12,7 @@
 #include "server/contract/constraints.h"
 #include "server/resources/provenance.h"
 #include "server/simulation/campaign_columns.h"
+#include "server/simulation/campaign_scene.h"
 
 namespace tribodyn::server {
 namespace {
@@ -23,7 +24,7 @@ using google::protobuf::FieldDescriptor;
 const google::protobuf::Message* holder_of(const FieldDescriptor& field,
                                            const SimulationInputs& base) {
   const v1::Lubricant& lubricant = *base.lubricant;
-  if (field.containing_type() == v1::Surface::descriptor()) return &*base.surface;
+  if (field.containing_type() == v1::Surface::descriptor()) return base.surface.get();
   if (field.containing_type() == v1::Lubricant::descriptor()) {
     const bool is_of_roelands = field.name().starts_with("pressure_viscosity_");
     return is_of_roelands && lubricant.has_improved_yasutomi() ? nullptr : &lubricant;
@@ -58,7 +59,8 @@ double within_limits(const FieldDescriptor& field, double value) {
   return row == nullptr ? value : std::clamp(value, row->minimum, row->maximum);
 }
 
-/// Leaves out what is not needed for a column: the numbers of the columns before it stay.
+/// Leaves out what is not needed for a column: the numbers of the columns before it stay. A rig has
+/// all of its columns.
 void keep_column(int column, PointEvaluation& points) {
   const auto first_contact = static_cast<int>(kCampaignColumns.size());
   const auto first_elasticity =
@@ -84,9 +86,9 @@ std::optional<double> base_value(const FieldDescriptor& field, const SimulationI
 double stated_by_base(const std::string& path, const FieldDescriptor& field,
                       const SimulationInputs& base) {
   if (errs_with_a_law(field)) return 0;
-  const auto& entries = field.containing_type() == v1::Surface::descriptor()
-                            ? base.surface->provenance()
-                            : base.lubricant->provenance();
+  const bool is_of_surface = field.containing_type() == v1::Surface::descriptor();
+  if (is_of_surface && !base.surface) return 0;
+  const auto& entries = is_of_surface ? base.surface->provenance() : base.lubricant->provenance();
   const v1::ParameterProvenance* entry = find_provenance(entries, path.substr(path.find('.') + 1));
   return entry == nullptr ? 0 : entry->standard_uncertainty();
 }
@@ -178,21 +180,21 @@ std::vector<std::vector<double>> EffectsStudy::compute(CampaignInputs inputs,
   points.columns = std::move(moved);
   points.candidates = static_cast<int>(2 * candidates.size() * parameters.size());
 
-  CandidateScene scene(points, [&is_over] { return !is_over(); });
-  const auto gear_set = gear_sets.take(points.base.gear_set, scene.scene());
-  std::vector<EvaluatedPoint> row(static_cast<std::size_t>(points.conditions));
-  std::vector<double> values(row.size());
+  const auto scene = campaign_scene(inputs, [&is_over] { return !is_over(); });
+  const auto gear_set = scene->take_gear_set(gear_sets);
+  std::vector<CampaignRow> rows(static_cast<std::size_t>(points.conditions));
+  std::vector<double> values(rows.size());
   std::vector<double> figures;
   for (int i = 0; i < points.candidates; ++i) {
-    scene.set_candidate(i);
-    for (const PointEvaluation::Group& group : points.groups) scene.evaluate(group, gear_set, row);
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      values[k] = campaign_value(points, row[k], column);
+    scene->set_candidate(i);
+    for (std::size_t group = 0; group < scene->groups(); ++group) {
+      scene->evaluate(group, gear_set, rows);
     }
+    for (std::size_t k = 0; k < rows.size(); ++k) values[k] = rows[k].value(column);
     figures.push_back(aggregate.value(values));
   }
   // As in evaluate_points(), an exception drops the gear set.
-  gear_sets.give_back(points.base.gear_set, scene.scene().options, gear_set);
+  scene->give_back(gear_sets, gear_set);
 
   std::vector<std::vector<double>> out;
   auto figure = figures.begin();

@@ -17,7 +17,8 @@ namespace tribodyn::server {
 /// Returns true if the parameter errs together with others: by a fit to the same measurements.
 bool errs_with_a_law(const google::protobuf::FieldDescriptor& field);
 
-// Of a base only lubricant and surface are used.
+// Of a base only lubricant and surface are used. It has no surface if the specimens of a rig are
+// smooth.
 
 /// Returns the value of the base; nullopt if it has none.
 std::optional<double> base_value(const google::protobuf::FieldDescriptor& field,

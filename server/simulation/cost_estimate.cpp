@@ -31,7 +31,9 @@ constexpr double kPinionSpeedAtOneKilometrePerHour = 3.2;  // [rad/s], paper's a
 // branch.
 constexpr double kSpreadSeconds = 0.7e-3;
 constexpr double kHalvingSeconds = 0.13e-3;
-constexpr double kEndInterval = 0.04;  // [km/h]
+constexpr double kEndInterval = 0.04;           // [km/h]
+constexpr double kPreparedRigSeconds = 1.5e-6;  // [s] for each candidate and temperature (measured)
+constexpr Work kRigRow{1, 4e-6};                // with what a campaign does about it (measured)
 constexpr Work kMarchedCycle{2300, 0.8e-6};
 constexpr double kUsualMarchedCycles = 35;
 constexpr Work kOrbitSample{3, 2.3e-6};  // one sample of a history, three flanks
@@ -157,6 +159,14 @@ v1::CostEstimate estimate_screening_cost(const v1::Simulation& effective, int ca
   out.set_processor_seconds(seconds);
   out.set_contact_solutions(candidates * out.contact_solutions());
   out.set_processor_seconds(rounded(candidates * out.processor_seconds()));
+  return out;
+}
+
+v1::CostEstimate estimate_rig_cost(int candidates, std::size_t temperatures, int conditions) {
+  v1::CostEstimate out;
+  out.set_processor_seconds(candidates * static_cast<double>(temperatures) * kPreparedRigSeconds);
+  add(kRigRow, static_cast<double>(candidates) * conditions, out);
+  out.set_processor_seconds(rounded(out.processor_seconds()));
   return out;
 }
 

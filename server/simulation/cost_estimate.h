@@ -24,4 +24,7 @@ v1::CostEstimate estimate_screening_cost(const v1::Simulation& effective, int ca
                                          const std::vector<double>& speeds_kilometres_per_hour,
                                          const ScreenedExtras& extras);
 
+/// Estimates the cost of running candidates on a rig at `conditions` of so many temperatures.
+v1::CostEstimate estimate_rig_cost(int candidates, std::size_t temperatures, int conditions);
+
 }  // namespace tribodyn::server

@@ -108,6 +108,18 @@ constexpr InputFields kInputFields[] = {
      "cruise drive_cycle_snapshot prescribed_torque model start "
      "probe_coexisting_response history sensitivities",
      ""},
+    // The conditions of a grid are hashed as conditions.
+    {"CampaignRig",
+     "composite_rms_height_metres radius_x_metres radius_y_metres body_1 body_2 conditions",
+     "grid"},
+    {"RigBody",
+     "youngs_modulus_pascals poissons_ratio thermal_conductivity_watts_per_metre_kelvin "
+     "density_kilograms_per_cubic_metre specific_heat_capacity_joules_per_kilogram_kelvin",
+     ""},
+    {"RigCondition",
+     "load_newtons entrainment_speed_metres_per_second slide_roll_ratio_percent "
+     "supply_temperature_celsius",
+     ""},
     {"Cruise", "speed_kilometres_per_hour ascent_angle_degrees", ""},
     {"DriveCycleSnapshot",
      "speed_kilometres_per_hour acceleration_metres_per_second_squared "

@@ -63,53 +63,6 @@ void check_values(const v1::CandidateColumn& column, const FieldDescriptor& fiel
   }
 }
 
-std::vector<PointEvaluation::Column> read_columns(const v1::EvaluatePointsRequest& request,
-                                                  Violations& violations) {
-  std::vector<PointEvaluation::Column> out;
-  std::set<std::string> paths;
-  for (int i = 0; i < request.candidate_columns_size(); ++i) {
-    const v1::CandidateColumn& column = request.candidate_columns(i);
-    const std::string path = fmt::format("candidate_columns[{}]", i);
-    const auto found = candidate_parameters().find(column.path());
-    if (found == candidate_parameters().end()) {
-      violations.push_back({path + ".path", unknown_parameter_text(column.path())});
-      continue;
-    }
-    if (!paths.insert(column.path()).second) {
-      violations.push_back(
-          {path + ".path", fmt::format("\"{}\" is listed twice; allowed: once", column.path())});
-    }
-    const int rows = request.candidate_columns(0).values_size();
-    if (column.values_size() != rows || rows == 0) {
-      violations.push_back(
-          {path + ".values",
-           fmt::format("{} values; allowed: one for each candidate, at least one and as many as in "
-                       "candidate_columns[0], which has {}",
-                       column.values_size(), rows)});
-    }
-    check_values(column, *found->second, path, violations);
-    out.push_back({found->second, {column.values().begin(), column.values().end()}});
-  }
-  return out;
-}
-
-/// Adds a violation for each column that has no effect under the pressure-viscosity law of the
-/// base.
-void check_law_columns(const v1::EvaluatePointsRequest& request, const v1::Lubricant& base,
-                       Violations& violations) {
-  for (int i = 0; i < request.candidate_columns_size(); ++i) {
-    const std::string& path = request.candidate_columns(i).path();
-    const bool is_of_law = path.starts_with("lubricant.improved_yasutomi.");
-    const bool is_of_roelands = path.starts_with("lubricant.pressure_viscosity_");
-    const bool follows_law = base.has_improved_yasutomi();
-    if (!(follows_law ? is_of_roelands : is_of_law)) continue;
-    violations.push_back(
-        {fmt::format("candidate_columns[{}].path", i),
-         fmt::format("\"{}\" has no effect: {} {} improved_yasutomi", path, request.lubricant(),
-                     follows_law ? "follows" : "does not follow")});
-  }
-}
-
 double sump_temperature(const v1::PointCondition& condition) {
   return condition.has_sump_temperature_celsius() ? condition.sump_temperature_celsius()
                                                   : kDefaultSumpTemperatureCelsius;
@@ -358,6 +311,51 @@ std::string unknown_parameter_text(const std::string& path) {
                      plain_excerpt(path), meant_text(path, candidate_parameter_names()));
 }
 
+std::vector<PointEvaluation::Column> read_columns(const v1::EvaluatePointsRequest& request,
+                                                  Violations& violations) {
+  std::vector<PointEvaluation::Column> out;
+  std::set<std::string> paths;
+  for (int i = 0; i < request.candidate_columns_size(); ++i) {
+    const v1::CandidateColumn& column = request.candidate_columns(i);
+    const std::string path = fmt::format("candidate_columns[{}]", i);
+    const auto found = candidate_parameters().find(column.path());
+    if (found == candidate_parameters().end()) {
+      violations.push_back({path + ".path", unknown_parameter_text(column.path())});
+      continue;
+    }
+    if (!paths.insert(column.path()).second) {
+      violations.push_back(
+          {path + ".path", fmt::format("\"{}\" is listed twice; allowed: once", column.path())});
+    }
+    const int rows = request.candidate_columns(0).values_size();
+    if (column.values_size() != rows || rows == 0) {
+      violations.push_back(
+          {path + ".values",
+           fmt::format("{} values; allowed: one for each candidate, at least one and as many as in "
+                       "candidate_columns[0], which has {}",
+                       column.values_size(), rows)});
+    }
+    check_values(column, *found->second, path, violations);
+    out.push_back({found->second, {column.values().begin(), column.values().end()}});
+  }
+  return out;
+}
+
+void check_law_columns(const v1::EvaluatePointsRequest& request, const v1::Lubricant& base,
+                       Violations& violations) {
+  for (int i = 0; i < request.candidate_columns_size(); ++i) {
+    const std::string& path = request.candidate_columns(i).path();
+    const bool is_of_law = path.starts_with("lubricant.improved_yasutomi.");
+    const bool is_of_roelands = path.starts_with("lubricant.pressure_viscosity_");
+    const bool follows_law = base.has_improved_yasutomi();
+    if (!(follows_law ? is_of_roelands : is_of_law)) continue;
+    violations.push_back(
+        {fmt::format("candidate_columns[{}].path", i),
+         fmt::format("\"{}\" has no effect: {} {} improved_yasutomi", path, request.lubricant(),
+                     follows_law ? "follows" : "does not follow")});
+  }
+}
+
 std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& request,
                                            const ResourceLookup& lookup, Violations& violations,
                                            int most, const char* remedy) {
@@ -426,33 +424,33 @@ CandidateScene::CandidateScene(const PointEvaluation& evaluation, std::function<
     : evaluation_(evaluation),
       options_(point_options(evaluation)),
       physical_(server::scene(evaluation.base)),
-      lubricant_(*evaluation.base.lubricant),
-      surface_(*evaluation.base.surface) {
+      resources_{*evaluation.base.lubricant, *evaluation.base.surface} {
   options_.progress = [keep = std::move(goes_on)](double) { return keep(); };
 }
 
-google::protobuf::Message& CandidateScene::holder_of(const FieldDescriptor& field) {
-  if (field.containing_type() == v1::Lubricant::descriptor()) return lubricant_;
-  if (field.containing_type() == v1::Surface::descriptor()) return surface_;
-  return *lubricant_.mutable_improved_yasutomi();
+void CandidateResources::set(const std::vector<PointEvaluation::Column>& columns, int candidate) {
+  for (const PointEvaluation::Column& column : columns) {
+    const Descriptor* type = column.field->containing_type();
+    google::protobuf::Message* holder = &lubricant;
+    if (type == v1::Surface::descriptor()) holder = &surface;
+    if (type == v1::ImprovedYasutomi::descriptor()) holder = lubricant.mutable_improved_yasutomi();
+    holder->GetReflection()->SetDouble(holder, column.field,
+                                       column.values[static_cast<std::size_t>(candidate)]);
+  }
 }
 
 void CandidateScene::set_candidate(int candidate) {
-  for (const PointEvaluation::Column& column : evaluation_.columns) {
-    google::protobuf::Message& holder = holder_of(*column.field);
-    holder.GetReflection()->SetDouble(&holder, column.field,
-                                      column.values[static_cast<std::size_t>(candidate)]);
-  }
-  physical_.lubricant = to_core(lubricant_);
-  physical_.roughness = roughness(surface_);
-  physical_.boundary = boundary_friction(surface_);
+  resources_.set(evaluation_.columns, candidate);
+  physical_.lubricant = to_core(resources_.lubricant);
+  physical_.roughness = roughness(resources_.surface);
+  physical_.boundary = boundary_friction(resources_.surface);
 }
 
 void CandidateScene::evaluate(const PointEvaluation::Group& group,
                               const std::shared_ptr<PreparedGearSet>& gear_set,
                               std::vector<EvaluatedPoint>& out) {
-  evaluate_group(group, evaluation_.elasticities, lubricant_, physical_, {}, options_, gear_set,
-                 out);
+  evaluate_group(group, evaluation_.elasticities, resources_.lubricant, physical_, {}, options_,
+                 gear_set, out);
 }
 
 v1::EvaluatePointsResponse evaluate_points(const PointEvaluation& evaluation,

@@ -60,6 +60,14 @@ struct TemperatureErrors {
   double inlet_rise_kelvin = 0;
 };
 
+/// Reads the columns of candidates of a request. Adds all violations.
+std::vector<PointEvaluation::Column> read_columns(const v1::EvaluatePointsRequest& request,
+                                                  Violations& violations);
+/// Adds a violation for each column that has no effect under the pressure-viscosity law of the
+/// base.
+void check_law_columns(const v1::EvaluatePointsRequest& request, const v1::Lubricant& base,
+                       Violations& violations);
+
 /// Checks the request and finds its resources. Returns nullopt and adds all violations if the
 /// request is invalid or has more than `most` points; `remedy` says what to do then.
 std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& request,
@@ -89,6 +97,15 @@ std::vector<EvaluatedPoint> evaluate_conditions(const PointEvaluation& evaluatio
                                                 const std::shared_ptr<PreparedGearSet>& gear_set,
                                                 const std::vector<bool>* wanted = nullptr);
 
+/// Lubricant and surface of a candidate.
+struct CandidateResources {
+  v1::Lubricant lubricant;
+  v1::Surface surface;
+
+  /// Replaces the parameters that have columns by those of a candidate, counted from 0.
+  void set(const std::vector<PointEvaluation::Column>& columns, int candidate);
+};
+
 /// The candidates of an evaluation, one at a time. Not safe for concurrent access.
 class CandidateScene {
  public:
@@ -106,13 +123,10 @@ class CandidateScene {
   const Scene& scene() const { return physical_; }
 
  private:
-  google::protobuf::Message& holder_of(const google::protobuf::FieldDescriptor& field);
-
   const PointEvaluation& evaluation_;
   PointOptions options_;
   Scene physical_;
-  v1::Lubricant lubricant_;
-  v1::Surface surface_;
+  CandidateResources resources_;
 };
 
 /// Computes all points by screen_point(). A point that the core refuses is a refused row. Throws

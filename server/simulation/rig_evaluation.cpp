@@ -47,6 +47,16 @@ Roughness with_height(Roughness surface, double height) {
   return surface;
 }
 
+SolidPair solids_of(const v1::EvaluateRigRequest& request) {
+  return {solid(request.has_body_1(), request.body_1()),
+          solid(request.has_body_2(), request.body_2())};
+}
+
+EffectiveRadii radii_of(const v1::EvaluateRigRequest& request) {
+  const double radius_y = request.radius_y_metres();
+  return {request.radius_x_metres(), radius_y == 0 ? request.radius_x_metres() : radius_y};
+}
+
 constexpr RigColumn kRigColumns[] = {
     {"traction_coefficient", &v1::EvaluateRigResponse::mutable_traction_coefficient,
      &RigPoint::traction_coefficient},
@@ -72,17 +82,17 @@ constexpr RigColumn kRigColumns[] = {
      &RigPoint::limiting_stress_area_share},
 };
 
-constexpr int kMaximumRigConditions = 5000;
 /// Rows times (draws + 1) of one request. A contact takes about 4.5 us, of cold oil under fast
 /// sliding 13 us (measured over 5000 rows with 199 draws): a request takes seconds.
 constexpr long kMaximumRigContacts = 1'000'000;
 constexpr double kLeastRigLoad = 1e-6, kMostRigLoad = 1e6;  // [N], of RigCondition
 
 /// Returns the loads of a grid: as stated, or under which the dry contact has its mean pressures.
-std::vector<double> grid_loads(const v1::RigGrid& grid, const RigScene& scene) {
+std::vector<double> grid_loads(const v1::EvaluateRigRequest& request) {
+  const v1::RigGrid& grid = request.grid();
   std::vector<double> out(grid.loads_newtons().begin(), grid.loads_newtons().end());
   for (const double pressure : grid.mean_pressures_pascals()) {
-    out.push_back(load_of_mean_pressure(scene.solids, scene.radii, pressure));
+    out.push_back(load_of_mean_pressure(solids_of(request), radii_of(request), pressure));
   }
   return out;
 }
@@ -98,7 +108,7 @@ double combinations_of(const v1::RigGrid& grid) {
 }
 
 /// Adds a violation for each list that is missing or too much, and for too many combinations.
-void check_grid(const v1::RigGrid& grid, Violations& violations) {
+void check_grid(const v1::RigGrid& grid, int most, Violations& violations) {
   if (grid.loads_newtons().empty() == grid.mean_pressures_pascals().empty()) {
     violations.push_back(
         {"grid.loads_newtons",
@@ -115,17 +125,16 @@ void check_grid(const v1::RigGrid& grid, Violations& violations) {
   count("entrainment_speeds_metres_per_second", grid.entrainment_speeds_metres_per_second_size());
   count("slide_roll_ratios_percent", grid.slide_roll_ratios_percent_size());
   const double combinations = combinations_of(grid);
-  if (combinations > kMaximumRigConditions) {
-    violations.push_back({"grid", fmt::format("{} combinations; allowed: at most {}", combinations,
-                                              kMaximumRigConditions)});
+  if (combinations > most) {
+    violations.push_back(
+        {"grid", fmt::format("{} combinations; allowed: at most {}", combinations, most)});
   }
 }
 
 /// Adds a violation if the rows are too many for the draws. Rows beyond their own limit are not
 /// named twice.
 void check_draws(const v1::EvaluateRigRequest& request, Violations& violations) {
-  const double rows =
-      request.has_grid() ? combinations_of(request.grid()) : request.conditions_size();
+  const double rows = rig_condition_count(request);
   if (request.draws() <= 0 || rows > kMaximumRigConditions) return;
   const long contacts = std::lround(rows) * (request.draws() + 1L);
   if (contacts <= kMaximumRigContacts) return;
@@ -136,8 +145,9 @@ void check_draws(const v1::EvaluateRigRequest& request, Violations& violations) 
                             kMaximumRigContacts / std::lround(rows) - 1)});
 }
 
-void check_grid_loads(const v1::RigGrid& grid, const RigScene& scene, Violations& violations) {
-  const std::vector<double> loads = grid_loads(grid, scene);
+void check_grid_loads(const v1::EvaluateRigRequest& request, Violations& violations) {
+  const v1::RigGrid& grid = request.grid();
+  const std::vector<double> loads = grid_loads(request);
   for (int i = 0; i < grid.mean_pressures_pascals_size(); ++i) {
     const double load =
         loads[static_cast<std::size_t>(grid.loads_newtons_size()) + static_cast<std::size_t>(i)];
@@ -147,28 +157,6 @@ void check_grid_loads(const v1::RigGrid& grid, const RigScene& scene, Violations
          fmt::format("{} Pa needs a load of {:.4g} N; allowed: {} to {} N",
                      grid.mean_pressures_pascals(i), load, kLeastRigLoad, kMostRigLoad)});
   }
-}
-
-/// The conditions of the request, those of a grid in the order of nested loops.
-std::vector<v1::RigCondition> conditions_of(const v1::EvaluateRigRequest& request,
-                                            const RigScene& scene) {
-  std::vector<v1::RigCondition> out(request.conditions().begin(), request.conditions().end());
-  if (!request.has_grid()) return out;
-  const v1::RigGrid& grid = request.grid();
-  for (const double temperature : grid.supply_temperatures_celsius()) {
-    for (const double load : grid_loads(grid, scene)) {
-      for (const double speed : grid.entrainment_speeds_metres_per_second()) {
-        for (const double slide : grid.slide_roll_ratios_percent()) {
-          v1::RigCondition& condition = out.emplace_back();
-          condition.set_supply_temperature_celsius(temperature);
-          condition.set_load_newtons(load);
-          condition.set_entrainment_speed_metres_per_second(speed);
-          condition.set_slide_roll_ratio_percent(slide);
-        }
-      }
-    }
-  }
-  return out;
 }
 
 /// Where rows leave the ranges of the laws: the rows of each law, and the sentence of the row that
@@ -235,18 +223,47 @@ void set_surface(const v1::Surface& surface, double composite_rms_height, RigSce
   scene.boundary = boundary_friction(surface);
 }
 
+double rig_condition_count(const v1::EvaluateRigRequest& request) {
+  return request.has_grid() ? combinations_of(request.grid()) : request.conditions_size();
+}
+
+std::vector<v1::RigCondition> rig_conditions(const v1::EvaluateRigRequest& request) {
+  std::vector<v1::RigCondition> out(request.conditions().begin(), request.conditions().end());
+  if (!request.has_grid()) return out;
+  const v1::RigGrid& grid = request.grid();
+  const std::vector<double> loads = grid_loads(request);
+  for (const double temperature : grid.supply_temperatures_celsius()) {
+    for (const double load : loads) {
+      for (const double speed : grid.entrainment_speeds_metres_per_second()) {
+        for (const double slide : grid.slide_roll_ratios_percent()) {
+          v1::RigCondition& condition = out.emplace_back();
+          condition.set_supply_temperature_celsius(temperature);
+          condition.set_load_newtons(load);
+          condition.set_entrainment_speed_metres_per_second(speed);
+          condition.set_slide_roll_ratio_percent(slide);
+        }
+      }
+    }
+  }
+  return out;
+}
+
 std::optional<RigEvaluation> read_rig(const v1::EvaluateRigRequest& request,
-                                      const ResourceLookup& lookup, Violations& violations) {
+                                      const ResourceLookup& lookup, Violations& violations,
+                                      int most) {
   const std::size_t before = violations.size();
   check_message(request, "", violations);
   check_model_options(request.model_options(), "model_options", violations);
   if (request.has_grid()) {
-    check_grid(request.grid(), violations);
+    check_grid(request.grid(), most, violations);
     if (!request.conditions().empty()) {
       violations.push_back({"conditions", "set together with grid; allowed: one of the two"});
     }
   } else if (request.conditions().empty()) {
     violations.push_back({"conditions", "not set; allowed: at least one"});
+  } else if (request.conditions_size() > most) {
+    violations.push_back({"conditions", fmt::format("{} conditions; allowed: at most {}",
+                                                    request.conditions_size(), most)});
   }
   check_draws(request, violations);
   RigEvaluation out{};  // zeros: smooth specimens
@@ -274,13 +291,11 @@ std::optional<RigEvaluation> read_rig(const v1::EvaluateRigRequest& request,
   out.lubricant = lubricant->resource;
   out.lubricant_revision = lubricant->revision_name;
   scene.lubricant = to_core(*lubricant->resource);
-  scene.solids = {solid(request.has_body_1(), request.body_1()),
-                  solid(request.has_body_2(), request.body_2())};
-  const double radius_y = request.radius_y_metres();
-  scene.radii = {request.radius_x_metres(), radius_y == 0 ? request.radius_x_metres() : radius_y};
+  scene.solids = solids_of(request);
+  scene.radii = radii_of(request);
   scene.options = to_core(request.model_options());
   scene.options.hertz_solution = HertzSolution::kExact;
-  check_grid_loads(request.grid(), scene, violations);
+  check_grid_loads(request, violations);
   if (violations.size() > before) return std::nullopt;
   return out;
 }
@@ -289,7 +304,7 @@ v1::EvaluateRigResponse evaluate_rig(const v1::EvaluateRigRequest& request,
                                      const RigEvaluation& evaluation,
                                      const std::function<bool()>& is_over) {
   v1::EvaluateRigResponse out;
-  const std::vector<v1::RigCondition> conditions = conditions_of(request, evaluation.scene);
+  const std::vector<v1::RigCondition> conditions = rig_conditions(request);
   const int rows = static_cast<int>(conditions.size());
   for (const RigColumn& each : kRigColumns) {
     (out.*each.column)()->Resize(rows, std::numeric_limits<double>::quiet_NaN());

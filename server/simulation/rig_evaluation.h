@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/rig/rig.h"
 #include "server/contract/resource_names.h"
@@ -25,7 +26,10 @@ struct RigEvaluation {
   std::string surface_revision;  ///< empty for smooth specimens
 };
 
-/// One column of the answer and the figure that it holds.
+inline constexpr int kMaximumRigConditions = 5000;  ///< of one EvaluateRig
+
+/// One column of the answer and the figure that it holds. Databases hold the columns of campaigns
+/// in this order: a further one comes last.
 struct RigColumn {
   const char* name;
   google::protobuf::RepeatedField<double>* (v1::EvaluateRigResponse::*column)();
@@ -38,9 +42,16 @@ std::span<const RigColumn> rig_columns();
 void set_surface(const v1::Surface& surface, double composite_rms_height, RigScene& scene);
 
 /// Checks the request and finds its resources. Returns nullopt and adds all violations if the
-/// request is invalid.
+/// request is invalid, or has more than `most` conditions.
 std::optional<RigEvaluation> read_rig(const v1::EvaluateRigRequest& request,
-                                      const ResourceLookup& lookup, Violations& violations);
+                                      const ResourceLookup& lookup, Violations& violations,
+                                      int most = kMaximumRigConditions);
+
+/// Returns the number of conditions of a request, valid or not.
+double rig_condition_count(const v1::EvaluateRigRequest& request);
+
+/// Returns the conditions of a request, those of a grid in the order of nested loops.
+std::vector<v1::RigCondition> rig_conditions(const v1::EvaluateRigRequest& request);
 
 /// Computes all conditions, with the uncertainty of their figures if the request has draws. A
 /// condition that the core refuses is a refused row. Throws Cancelled

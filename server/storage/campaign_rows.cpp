@@ -25,6 +25,14 @@ constexpr char kSelectCampaigns[] =
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle) "
     "FROM campaigns ";
 
+/// Returns the relative name of a revision; empty if it is not of this collection: no column is
+/// NULL, and one without a resource has the lubricant.
+std::string own_revision(const std::string& full, std::string_view collection) {
+  std::string name = relative_name(full);
+  const bool is_own = name.starts_with(collection) && name[collection.size()] == '/';
+  return is_own ? name : std::string();
+}
+
 StoredCampaign stored_campaign(const SQLite::Statement& query) {
   StoredCampaign out;
   int at = 0;
@@ -55,9 +63,9 @@ StoredCampaign stored_campaign(const SQLite::Statement& query) {
   out.cost_seconds = next().getDouble();
   out.stored_bytes = next().getInt64();
   out.lubricant_revision = relative_name(next().getString());
-  out.gear_set_revision = relative_name(next().getString());
-  out.surface_revision = relative_name(next().getString());
-  out.vehicle_revision = relative_name(next().getString());
+  out.gear_set_revision = own_revision(next().getString(), kGearSets);
+  out.surface_revision = own_revision(next().getString(), kSurfaces);
+  out.vehicle_revision = own_revision(next().getString(), kVehicles);
   return out;
 }
 
@@ -271,7 +279,8 @@ CampaignAdded insert_campaign(Connection& db, const NewCampaign& campaign, Micro
   bind_blob(insert, ++at, campaign.candidate_table);
   for (const std::string* revision : {&campaign.lubricant_revision, &campaign.gear_set_revision,
                                       &campaign.surface_revision, &campaign.vehicle_revision}) {
-    bind_revision(insert, at + 1, campaign.project, *revision);
+    bind_revision(insert, at + 1, campaign.project,
+                  revision->empty() ? campaign.lubricant_revision : *revision);
     at += 2;
   }
   insert.exec();

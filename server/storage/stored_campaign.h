@@ -48,7 +48,8 @@ struct NewCampaign {
   double cost_seconds = 0;  ///< estimate, in seconds of one processor
   CampaignBudget budget;
   CampaignLabels labels;
-  // Revisions of its resources, as relative names; each exists in the project.
+  // Revisions of its resources, as relative names; each exists in the project. Those but the first
+  // are empty if it has no such resource.
   std::string lubricant_revision;
   std::string gear_set_revision;
   std::string surface_revision;
@@ -95,7 +96,7 @@ struct StoredCampaign {
   double processor_seconds = 0;
   double cost_seconds = 0;  ///< estimate of all its points, in seconds of one processor
   std::int64_t stored_bytes = 0;
-  // Revisions of its resources, as relative names.
+  // Revisions of its resources, as relative names; empty: it has no such resource.
   std::string lubricant_revision;
   std::string gear_set_revision;
   std::string surface_revision;

@@ -25,8 +25,10 @@
 #include <random>
 #include <thread>
 
+#include "core/rig/rig.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
+#include "server/mapping/to_core.h"
 #include "server/simulation/compute.h"
 #include "server/simulation/compute_task.h"
 #include "server/simulation/cost_estimate.h"
@@ -1003,10 +1005,9 @@ struct CampaignRun {
   double read_seconds = 0;
 };
 
-CampaignRun run_campaign(std::span<const v1::Lubricant> fluids, std::size_t threads) {
+CampaignRun run_campaign(const v1::CreateCampaignRequest& request, std::size_t threads) {
   const Server server({"--threads", std::to_string(threads)});
   const auto stub = v1::CampaignService::NewStub(connect(server.address()));
-  const v1::CreateCampaignRequest request = campaign_request(fluids);
   CampaignRun out;
   const double begin = process_figures(server.id()).processor_seconds;
   const auto start = Clock::now();
@@ -1038,7 +1039,7 @@ CampaignRun run_campaign(std::span<const v1::Lubricant> fluids, std::size_t thre
   std::size_t bytes = 0;
   for (v1::ReadCampaignResponse part; reader->Read(&part);) bytes += part.chunk().values().size();
   check_status(reader->Finish());
-  if (bytes < fluids.size()) throw std::runtime_error("rows are missing");
+  if (bytes < static_cast<std::size_t>(end.points())) throw std::runtime_error("rows are missing");
   out.read_seconds = seconds_since(before);
   return out;
 }
@@ -1053,7 +1054,7 @@ void measure_campaign_cost(std::size_t threads, std::vector<Measurement>& out) {
   std::vector<double> core, server, ratios, bytes, first, reads;
   for (int run = 0; run < kRuns; ++run) {
     core.push_back(1e6 * screen_in_core(inputs, threads) / points);
-    const CampaignRun campaign = run_campaign(fluids, threads);
+    const CampaignRun campaign = run_campaign(campaign_request(fluids), threads);
     server.push_back(1e6 * campaign.processor_seconds / points);
     ratios.push_back(server.back() / core.back());
     bytes.push_back(campaign.bytes / points);
@@ -1069,13 +1070,67 @@ void measure_campaign_cost(std::size_t threads, std::vector<Measurement>& out) {
   out.push_back({name + "_of_39000_points_read", median(reads), "ms", 150});
 }
 
+/// A campaign of two thousand fluids on a rough ball on a disc, at 36 conditions of two
+/// temperatures, against the same rows of the core alone.
+void measure_rig_campaign(std::vector<Measurement>& out) {
+  const std::vector<v1::Lubricant> fluids = candidates(2000);
+  v1::CreateCampaignRequest request = campaign_request(fluids);
+  v1::Campaign& campaign = *request.mutable_campaign();
+  campaign.clear_conditions();
+  campaign.set_surface("surfaces/run-in");
+  v1::CampaignRig& rig = *campaign.mutable_rig();
+  rig.set_radius_x_metres(0.0127);
+  v1::RigGrid& grid = *rig.mutable_grid();
+  for (const double celsius : {40.0, 100.0}) grid.add_supply_temperatures_celsius(celsius);
+  grid.add_loads_newtons(35);
+  for (const double speed : {0.3, 1.0, 3.0}) grid.add_entrainment_speeds_metres_per_second(speed);
+  for (const double percent : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0}) {
+    grid.add_slide_roll_ratios_percent(percent);
+  }
+  const v1::Surface surface = seed<v1::Surface>("surfaces/run-in");
+  RigScene scene{{}, {}, {0.0127, 0.0127}, roughness(surface), boundary_friction(surface), {}};
+  scene.options.hertz_solution = HertzSolution::kExact;
+  scene.solids.body_1 = scene.solids.body_2 = {210e9, 0.3, 46, 7850, 470};
+  double rows = 0, sum = 0;
+  const auto in_core = [&] {
+    rows = 0;
+    const double begin = thread_processor_seconds();
+    for (const v1::Lubricant& fluid : fluids) {
+      scene.lubricant = to_core(fluid);
+      for (const double celsius : grid.supply_temperatures_celsius()) {
+        const Rig prepared(scene, celsius + kZeroCelsius);
+        for (const double speed : grid.entrainment_speeds_metres_per_second()) {
+          for (const double percent : grid.slide_roll_ratios_percent()) {
+            sum += prepared.at({35, speed, 0.01 * percent}).traction_coefficient;
+            ++rows;
+          }
+        }
+      }
+    }
+    return thread_processor_seconds() - begin;
+  };
+  std::vector<double> core, server, ratios, bytes;
+  for (int run = 0; run < kRuns; ++run) {
+    core.push_back(1e6 * in_core() / rows);
+    const CampaignRun done = run_campaign(request, 1);
+    server.push_back(1e6 * done.processor_seconds / rows);
+    ratios.push_back(server.back() / core.back());
+    bytes.push_back(done.bytes / rows);
+  }
+  if (!(sum > 0)) throw std::runtime_error("a rig without traction");
+  out.push_back({"rig_campaign_row_in_the_core", median(core), "us", {}});
+  out.push_back({"rig_campaign_row_in_the_server", median(server), "us", {}});
+  out.push_back({"rig_campaign_row_over_the_core", median(ratios), "-", 1.5});
+  out.push_back({"rig_campaign_bytes_of_a_row", median(bytes), "B", 80});
+}
+
 /// How much faster two threads compute a campaign of some seconds than one.
 void measure_campaign_threads(std::vector<Measurement>& out) {
   const std::vector<v1::Lubricant> fluids = candidates(4000);
   std::vector<double> ratios;
   for (int run = 0; run < 3; ++run) {
-    const double one = run_campaign(fluids, 1).seconds;
-    ratios.push_back(one / run_campaign(fluids, 2).seconds);
+    const double one = run_campaign(campaign_request(fluids), 1).seconds;
+    ratios.push_back(one / run_campaign(campaign_request(fluids), 2).seconds);
   }
   out.push_back({"campaign_two_threads_over_one", median(ratios), "-", 1.8, false});
 }
@@ -1158,6 +1213,7 @@ void measure_large_campaign(std::vector<Measurement>& out) {
 void measure_campaigns(std::vector<Measurement>& out) {
   measure_campaign_cost(1, out);
   measure_campaign_cost(2, out);
+  measure_rig_campaign(out);
   measure_campaign_threads(out);
   measure_interactive_beside_a_campaign(out);
   measure_large_campaign(out);

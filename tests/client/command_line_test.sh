@@ -606,6 +606,49 @@ out_has 'lubricant pressure viscosity coefficient .*\|#'
 expect 0 point --lubricant paper-fluid-1 --speed 100 --sensitivities
 out_has '^Sensitivities'
 
+echo "--- screening on a rig in place of the axle"
+{
+  echo "name,pressure-viscosity (1/GPa),asperity_friction_coefficient,cost"
+  for i in $(seq 24); do echo "oil $i,$((14 + i % 5)),0.0$((80 + i % 7)),$((30 - i))"; done
+} >"$table"
+expect 0 screen "$table" --like paper-fluid-1 --rig traction --surface run-in --srr 2,10,50 --temperature 40,100 \
+  --pareto cost --effects --uncertainty pressure-viscosity=3% --csv "$folder/rig.csv"
+out_has '^ *rank +candidate +name +traction_coefficient'
+out_has '20 of 24 candidates'
+out_has 'No other candidate is better in both'
+out_has 'Effects on traction_coefficient over 24 candidates'
+on_rig=$(grep -oE 'campaigns/[0-9]+' "$folder/out" | head -n 1 | grep -oE '[0-9]+$')
+[ "$(wc -l <"$folder/rig.csv")" -eq 145 ] || fail "a row for each of 24 candidates at 6 conditions"
+head -n 1 "$folder/rig.csv" | grep -q '^name,candidate,.*,cost,load_newtons,.*,traction_coefficient,.*,refusal$' ||
+  fail "the header of the rows of a rig"
+expect 0 screen --campaign "$on_rig" --most central_film_thickness_metres:min --top 3
+out_has '3 of 24 candidates'
+out_has 'least central_film_thickness_metres'
+expect 0 screen "$table" --like paper-fluid-1 --rig stribeck --output json
+out_is_json
+out_has '"ranking"'
+cut -d , -f 1,2,4 "$table" >"$folder/smooth.csv"
+expect 0 screen "$folder/smooth.csv" --like paper-fluid-1 --rig film --no-uncertainty
+out_has 'central_film_thickness_metres'
+on_film=$(grep -oE 'campaigns/[0-9]+' "$folder/out" | head -n 1 | grep -oE '[0-9]+$')
+expect 0 campaigns show "$on_film"
+out_has '24 candidates at 13 conditions of a rig'
+out_has 'surface +none: smooth'
+expect 0 screen "$folder/smooth.csv" --like paper-fluid-1 --no-uncertainty
+on_axle=$(grep -oE 'campaigns/[0-9]+' "$folder/out" | head -n 1 | grep -oE '[0-9]+$')
+expect 0 campaigns pareto "$on_axle" --most "$on_film/central_film_thickness_metres:min"
+out_has "least central_film_thickness_metres of campaigns/$on_film"
+expect 1 campaigns pareto "$on_axle" --least "$on_rig/traction_coefficient"
+err_has "the candidates of campaigns/$on_rig are not those of campaigns/$on_axle"
+expect 0 campaigns rank "$on_film" --where "$on_axle/inefficiency_energy_mean_percent<=100" --output csv
+out_lines 21
+expect 2 screen "$table" --like paper-fluid-1 --rig film --speeds 20 --vehicle passenger-car --plot x.svg --least a --most b
+for part in '--speeds and --rig' '--vehicle and --rig' '--plot and --rig' 'give one --least or --most'; do err_has "$part"; done
+expect 2 screen "$table" --like paper-fluid-1 --srr 10
+err_has '--srr applies to a rig'
+expect 1 screen "$table" --like paper-fluid-1 --rig traction --radius 0.001mm --load 1e9
+err_has '--radius'
+
 echo "--- curve"
 expect 0 curve --lubricant sheet-a --speed 40,60 --plot "$folder/bands.svg"
 out_has 'inefficiency +inefficiency +inefficiency'

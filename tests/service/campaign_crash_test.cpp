@@ -94,6 +94,41 @@ TEST_F(CampaignCrashTest, AKilledServerContinuesAtTheMissingRowsWithTheSameBits)
   EXPECT_TRUE(bits(name) == expected);
 }
 
+TEST_F(CampaignCrashTest, ACampaignOfARigContinuesAtTheMissingRowsWithTheSameBits) {
+  v1::CreateCampaignRequest on_rig = request("rig");
+  v1::Campaign& campaign = *on_rig.mutable_campaign();
+  campaign.clear_conditions();
+  v1::CampaignRig& rig = *campaign.mutable_rig();
+  rig.set_radius_x_metres(0.0127);
+  v1::RigGrid& grid = *rig.mutable_grid();
+  grid.add_supply_temperatures_celsius(40);
+  grid.add_loads_newtons(35);
+  grid.add_entrainment_speeds_metres_per_second(2);
+  for (int i = 0; i < 150; ++i) grid.add_slide_roll_ratios_percent(0.2 * i);
+  const auto create_rig = [&](const std::string& request_id) {
+    on_rig.set_request_id(request_id);
+    grpc::ClientContext context;
+    v1::Campaign out;
+    EXPECT_TRUE(campaigns_->CreateCampaign(&context, on_rig, &out).ok());
+    return out.name();
+  };
+  const std::string name = create_rig("rig");
+  ASSERT_TRUE(eventually([&] { return get_campaign(name).points_done() > 2000; }));
+  const std::int32_t done = get_campaign(name).points_done();
+  kill_server();
+  restart();
+  EXPECT_GE(get_campaign(name).points_done(), done) << "what was told is on disk";
+  ASSERT_TRUE(eventually([&] { return get_campaign(name).state() == v1::Campaign::SUCCEEDED; }));
+  EXPECT_EQ(get_campaign(name).points_done(), 300'000);
+  EXPECT_EQ(get_campaign(name).points_refused(), 0);
+  const std::string undisturbed = create_rig("undisturbed");
+  ASSERT_TRUE(
+      eventually([&] { return get_campaign(undisturbed).state() == v1::Campaign::SUCCEEDED; }));
+  const std::string expected = bits(undisturbed);
+  EXPECT_EQ(expected.size(), std::size_t{300'000} * 11 * sizeof(double));
+  EXPECT_TRUE(bits(name) == expected);
+}
+
 /// Ten million points, of which the first few are computed.
 TEST_F(CampaignCrashTest, AHugeCampaignTakesNoMoreMemoryTheLongerItRuns) {
   v1::CreateCampaignRequest huge = request("huge");

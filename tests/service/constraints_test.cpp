@@ -155,6 +155,12 @@ struct Subject {
       use(points.mutable_conditions(0), "conditions[0].");
     } else if (name == "EvaluateRigRequest") {
       use(&rig, "");
+    } else if (name == "CampaignRig") {
+      campaign.set_lubricant(points.lubricant());
+      campaign.set_surface(rig.surface());
+      campaign.mutable_rig()->set_radius_x_metres(rig.radius_x_metres());
+      *campaign.mutable_rig()->mutable_conditions() = rig.conditions();
+      use(campaign.mutable_rig(), "rig.");
     } else if (name == "EvaluateCycleRequest" || name == "CyclePlace") {
       cycle.add_lubricants(points.lubricant());
       for (const double seconds : {0.0, 60.0}) {
@@ -283,7 +289,7 @@ struct Subject {
       read_comparison(comparison, seed_lookup(), violations);
       return violations;
     }
-    if (message == &campaign || path == "budget.") {
+    if (message == &campaign || path == "budget." || path == "rig.") {
       read_campaign(campaign, seed_lookup(), "", violations);
       return violations;
     }

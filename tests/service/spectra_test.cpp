@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "google/rpc/code.pb.h"
 #include "server/application/simulations.h"
 #include "server/application/streams.h"
 #include "tests/service/support.h"

@@ -5,14 +5,11 @@
 
 #include "client/cpp/commands/candidate_flags.h"
 #include "client/cpp/commands/command.h"
-#include "client/cpp/text/csv.h"
-#include "client/cpp/text/table.h"
+#include "client/cpp/report/candidate_decisions.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
 namespace {
-
-constexpr char kUsualColumn[] = "inefficiency_energy_mean_percent";
 
 struct DecisionFlags {
   std::string campaign;
@@ -74,7 +71,9 @@ void add_objective_flags(FlagList& list, const Flags& flags) {
         name, "FIGURE",
         wants_most ? "A figure of which more is better."
                    : "A figure of which less is better: a column of `campaigns columns`, alone or "
-                     "with :mean, :min or :max over the conditions, e.g. film_ratio_minimum:min.");
+                     "with :mean, :min or :max over the conditions, e.g. film_ratio_minimum:min; "
+                     "of another campaign with the same candidates with its number, e.g. "
+                     "13/traction_coefficient.");
     flag.is_repeatable = true;
     flag.read = [flags, wants_most, name](const std::vector<std::string>& texts,
                                           Complaints& complaints) {
@@ -87,95 +86,19 @@ void add_objective_flags(FlagList& list, const Flags& flags) {
   }
 }
 
+/// Names the column of a figure without one: that of its campaign.
+void name_figure_column(Connection& connection, const std::string& campaign,
+                        v1::CandidateFigure& figure) {
+  if (!figure.column().empty()) return;
+  const std::string& name = figure.campaign().empty() ? campaign : figure.campaign();
+  figure.set_column(usual_column(connection.get_campaign(name)));
+}
+
 template <class Request>
 void set_selection(const DecisionFlags& flags, Request& request) {
   request.set_name(flags.campaign);
   *request.mutable_constraints() = {flags.constraints.begin(), flags.constraints.end()};
   *request.mutable_condition_weights() = {flags.weights.begin(), flags.weights.end()};
-}
-
-std::string figure_text(const v1::CandidateFigure& figure) {
-  std::string column = figure.column().empty() ? kUsualColumn : figure.column();
-  switch (figure.aggregate()) {
-    case v1::CandidateFigure::MINIMUM:
-      return "least " + column;
-    case v1::CandidateFigure::MAXIMUM:
-      return "largest " + column;
-    default:
-      return column;
-  }
-}
-
-/// Returns what became of the candidates that are not in the table.
-template <class Response>
-std::string others_text(const Response& answer) {
-  std::vector<std::string> out;
-  const auto add = [&out](int count, const std::string& what) {
-    if (count > 0) out.push_back(std::to_string(count) + " " + what);
-  };
-  add(answer.excluded(), "violate a constraint");
-  add(answer.refused(), "have no such figure");
-  add(answer.missing(), "are not computed yet");
-  return out.empty() ? "" : "Of the other candidates " + joined(out, ", ") + ".";
-}
-
-void print_sheet(const std::vector<std::string>& remarks) {
-  Sheet sheet;
-  for (const std::string& each : remarks) {
-    if (!each.empty()) sheet.remark(each);
-  }
-  const std::string text = sheet.text();
-  if (!text.empty()) std::cout << "\n" << text;
-}
-
-void print_ranking(const v1::RankCandidatesRequest& request,
-                   const v1::RankCandidatesResponse& answer) {
-  using Align = Table::Align;
-  std::vector<Table::Column> columns = {
-      {"rank", ""},
-      {"candidate", ""},
-      {"name", "", Align::kLeft},
-      {figure_text(request.objective().figure()), "", Align::kDecimal},
-      {"+/- inputs", "", Align::kDecimal},
-      {"worse than the best", "%", Align::kDecimal},
-      {"", "", Align::kLeft}};
-  for (const v1::CandidateConstraint& each : request.constraints()) {
-    columns.push_back({figure_text(each.figure()), "", Align::kDecimal});
-  }
-  Table table(columns);
-  for (int i = 0; i < answer.candidates_size(); ++i) {
-    const v1::RankedCandidate& each = answer.candidates(i);
-    const v1::CandidateComparison& comparison = each.comparison();
-    std::vector<std::string> cells = {std::to_string(i + 1), std::to_string(each.candidate()),
-                                      each.label(), significant(each.value(), 6)};
-    if (each.has_comparison()) {
-      cells.insert(cells.end(), {significant(comparison.standard_uncertainty(), 2),
-                                 fixed(100 * comparison.worse_probability(), 1),
-                                 i == 0              ? "best"
-                                 : comparison.tied() ? "tie"
-                                                     : "worse"});
-    } else {
-      cells.insert(cells.end(), {"", "", ""});
-    }
-    for (const double value : each.constraint_values()) cells.push_back(significant(value, 5));
-    table.add_row(std::move(cells));
-  }
-  std::cout << table.text();
-  std::vector<std::string> own(answer.own_uncertain_parameters().begin(),
-                               answer.own_uncertain_parameters().end());
-  std::vector<std::string> shared(answer.shared_uncertain_parameters().begin(),
-                                  answer.shared_uncertain_parameters().end());
-  print_sheet(
-      {std::to_string(answer.candidates_size()) + " of " + std::to_string(answer.ranked()) +
-           " candidates.",
-       others_text(answer),
-       own.empty() && shared.empty()
-           ? "No parameter has an uncertainty: only the solver's errors make ties. --uncertainty "
-             "PARAMETER=VALUE states one."
-           : (own.empty() ? "" : "Errors of each candidate alone: " + joined(own, ", ") + ". ") +
-                 (shared.empty()
-                      ? ""
-                      : "Errors that all have in common: " + joined(shared, ", ") + ".")});
 }
 
 int run_rank(DecisionFlags& flags, const CommonOptions& options) {
@@ -186,34 +109,10 @@ int run_rank(DecisionFlags& flags, const CommonOptions& options) {
   request.set_confidence(flags.confidence);
   request.set_ignore_stated_uncertainties(flags.leaves_out_stated);
   *request.mutable_uncertainties() = {flags.uncertainties.begin(), flags.uncertainties.end()};
-  const v1::RankCandidatesResponse answer = options.connect().rank_candidates(request);
-  switch (options.output_format) {
-    case OutputFormat::kTable:
-      print_ranking(request, answer);
-      break;
-    case OutputFormat::kCsv: {
-      std::vector<CsvRow> rows;
-      for (const v1::RankedCandidate& each : answer.candidates()) {
-        const bool is_compared = each.has_comparison();
-        const v1::CandidateComparison& comparison = each.comparison();
-        rows.push_back(
-            {{"candidate", std::to_string(each.candidate())},
-             {"label", each.label()},
-             {"value", shortest(each.value())},
-             {"solver_error", each.has_solver_error() ? shortest(each.solver_error()) : ""},
-             {"standard_uncertainty",
-              is_compared ? shortest(comparison.standard_uncertainty()) : ""},
-             {"worse_probability", is_compared ? shortest(comparison.worse_probability()) : ""},
-             {"tied", !is_compared        ? ""
-                      : comparison.tied() ? "true"
-                                          : "false"}});
-      }
-      std::cout << csv_text(rows);
-      break;
-    }
-    case OutputFormat::kJson:
-      std::cout << json_text(answer);
-  }
+  Connection connection = options.connect();
+  name_figure_column(connection, request.name(), *request.mutable_objective()->mutable_figure());
+  const v1::RankCandidatesResponse answer = connection.rank_candidates(request);
+  std::cout << ranking_answer_text(request, answer, options.output_format);
   return answer.candidates().empty() ? kExitFailed : kExitOk;
 }
 
@@ -222,38 +121,11 @@ int run_pareto(DecisionFlags& flags, const CommonOptions& options) {
   set_selection(flags, request);
   *request.mutable_second() = flags.objectives.back();
   if (flags.objectives.size() == 2) *request.mutable_first() = flags.objectives.front();
-  const v1::FindParetoCandidatesResponse answer = options.connect().find_pareto_candidates(request);
-  switch (options.output_format) {
-    case OutputFormat::kTable: {
-      using Align = Table::Align;
-      Table table({{"candidate", ""},
-                   {"name", "", Align::kLeft},
-                   {figure_text(request.first().figure()), "", Align::kDecimal},
-                   {figure_text(request.second().figure()), "", Align::kDecimal}});
-      for (const v1::ParetoCandidate& each : answer.candidates()) {
-        table.add_row({std::to_string(each.candidate()), each.label(),
-                       significant(each.first_value(), 6), significant(each.second_value(), 6)});
-      }
-      std::cout << table.text();
-      print_sheet({"No other candidate is better in both: these beat " +
-                       std::to_string(answer.beaten()) + " others.",
-                   others_text(answer)});
-      break;
-    }
-    case OutputFormat::kCsv: {
-      std::vector<CsvRow> rows;
-      for (const v1::ParetoCandidate& each : answer.candidates()) {
-        rows.push_back({{"candidate", std::to_string(each.candidate())},
-                        {"label", each.label()},
-                        {"first_value", shortest(each.first_value())},
-                        {"second_value", shortest(each.second_value())}});
-      }
-      std::cout << csv_text(rows);
-      break;
-    }
-    case OutputFormat::kJson:
-      std::cout << json_text(answer);
-  }
+  Connection connection = options.connect();
+  name_figure_column(connection, request.name(), *request.mutable_first()->mutable_figure());
+  name_figure_column(connection, request.name(), *request.mutable_second()->mutable_figure());
+  const v1::FindParetoCandidatesResponse answer = connection.find_pareto_candidates(request);
+  std::cout << front_answer_text(request, answer, options.output_format);
   return answer.candidates().empty() ? kExitFailed : kExitOk;
 }
 
@@ -263,51 +135,11 @@ int run_effects(DecisionFlags& flags, const CommonOptions& options) {
   *request.mutable_figure() = flags.figure;
   *request.mutable_columns() = {flags.columns.begin(), flags.columns.end()};
   request.set_coverage(flags.confidence);
+  Connection connection = options.connect();
+  name_figure_column(connection, request.name(), *request.mutable_figure());
   const v1::EstimateCandidateEffectsResponse answer =
-      options.connect().estimate_candidate_effects(request);
-  switch (options.output_format) {
-    case OutputFormat::kTable: {
-      using Align = Table::Align;
-      Table table({{"column", "", Align::kLeft},
-                   {"from candidate", ""},
-                   {"to candidate", ""},
-                   {"effect", "", Align::kDecimal},
-                   {"interval", "", Align::kRight},
-                   {"", "", Align::kLeft}});
-      for (const v1::CandidateEffect& each : answer.effects()) {
-        const bool is_certain = each.effect_minimum() > 0 || each.effect_maximum() < 0;
-        table.add_row(
-            {each.column(), std::to_string(each.from_candidate()),
-             std::to_string(each.to_candidate()), significant(each.effect(), 4),
-             significant(each.effect_minimum(), 3) + " to " + significant(each.effect_maximum(), 3),
-             is_certain ? "" : "cannot be told from zero"});
-      }
-      std::cout << table.text();
-      std::vector<std::string> left_out;
-      for (const v1::ColumnWithoutEffect& each : answer.left_out()) {
-        left_out.push_back(each.column() + " (" +
-                           v1::ColumnWithoutEffect::Reason_Name(each.reason()) + ")");
-      }
-      print_sheet({"Effects on " + figure_text(request.figure()) + " over " +
-                       std::to_string(answer.candidates()) +
-                       " candidates. A linear model without interactions explains " +
-                       fixed(100 * answer.explained_share(), 1) + " % of the variance.",
-                   left_out.empty() ? "" : "Without an effect: " + joined(left_out, ", ") + ".",
-                   others_text(answer)});
-      break;
-    }
-    case OutputFormat::kCsv: {
-      std::vector<CsvRow> rows;
-      for (const v1::CandidateEffect& each : answer.effects()) {
-        CsvRow& row = rows.emplace_back();
-        append_fields(each, "", row);
-      }
-      std::cout << csv_text(rows);
-      break;
-    }
-    case OutputFormat::kJson:
-      std::cout << json_text(answer);
-  }
+      connection.estimate_candidate_effects(request);
+  std::cout << effects_answer_text(request, answer, options.output_format);
   return kExitOk;
 }
 
@@ -330,7 +162,7 @@ Command rank_command() {
       "campaigns rank", "rank the candidates of a campaign",
       "Prints the best candidates of a campaign, finished or not, and which of them cannot be told "
       "apart from the best one, by the stated uncertainties of parameters and the solver's errors. "
-      "Without --least or --most the mean inefficiency counts.",
+      "Without --least or --most the mean inefficiency counts, of a rig the traction coefficient.",
       "tribodyn campaigns rank 12 --where film_ratio_minimum:min>=0.8 --uncertainty "
       "pressure-viscosity=3%",
       run_rank, flags);
@@ -363,7 +195,7 @@ Command pareto_command() {
   Command command = decision_command(
       "campaigns pareto", "find the candidates that no other one beats in two figures",
       "Prints the Pareto front of a campaign, finished or not. One figure alone stands beside the "
-      "mean inefficiency, of which less is better.",
+      "mean inefficiency, of a rig beside the traction coefficient, of which less is better.",
       "tribodyn campaigns pareto 12 --most film_ratio_minimum:min", run_pareto, flags);
   command.flags.group("Options");
   add_objective_flags(command.flags, flags);
@@ -390,7 +222,9 @@ Command effects_command() {
       "tribodyn campaigns effects 12 --figure film_ratio_minimum:min --columns concentration");
   command.flags.group("Options");
   Flag& figure =
-      command.flags.raw("--figure", "FIGURE", "The figure. Default: the mean inefficiency.");
+      command.flags.raw("--figure", "FIGURE",
+                        "The figure. Default: the mean inefficiency, of a rig the traction "
+                        "coefficient.");
   figure.read = [flags](const std::vector<std::string>& texts, Complaints& complaints) {
     read_candidate_figure("--figure", texts.back(), flags->figure, complaints);
   };

@@ -122,7 +122,8 @@ std::string campaign_sheet(const v1::Campaign& campaign) {
   sheet.line("points computed", std::to_string(campaign.points_done()), "",
              "of " + std::to_string(campaign.points()) + ", " +
                  std::to_string(campaign.candidates()) + " candidates at " +
-                 std::to_string(campaign.conditions_size()) + " conditions");
+                 std::to_string(campaign.points() / std::max(campaign.candidates(), 1)) +
+                 " conditions" + (campaign.has_rig() ? " of a rig" : ""));
   sheet.line("points without figures", std::to_string(campaign.points_refused()));
   sheet.line("processor time", duration_text(campaign.processor_seconds()));
   sheet.line("budget", budget_text(campaign.budget()));
@@ -134,9 +135,12 @@ std::string campaign_sheet(const v1::Campaign& campaign) {
   }
   sheet.heading("What it rests on");
   sheet.line("lubricant", campaign.lubricant_revision());
-  sheet.line("surface", campaign.surface_revision());
-  sheet.line("gear set", campaign.gear_set_revision());
-  sheet.line("vehicle", campaign.vehicle_revision());
+  sheet.line("surface",
+             campaign.surface_revision().empty() ? "none: smooth" : campaign.surface_revision());
+  if (!campaign.has_rig()) {
+    sheet.line("gear set", campaign.gear_set_revision());
+    sheet.line("vehicle", campaign.vehicle_revision());
+  }
   sheet.line("model", campaign.model_version());
   sheet.line("hash of inputs", campaign.input_hash());
   sheet.line("request id", campaign.request_id());
@@ -225,7 +229,9 @@ v1::AppendCandidatesRequest rows_to_append(const CampaignFlags& flags, const v1:
   const std::string text = read_table_file(flags.path, kLargestFile);
   CandidateBase base;
   base.lubricant = connection.get<v1::Lubricant>(campaign.lubricant_revision());
-  base.surface = connection.get<v1::Surface>(campaign.surface_revision());
+  if (!campaign.surface_revision().empty()) {
+    base.surface = connection.get<v1::Surface>(campaign.surface_revision());
+  }
   const ResourcePointer stated = base_of_rows(connection, kind_of(*v1::Lubricant::descriptor()),
                                               campaign.lubricant_revision());
   base.stated = dynamic_cast<const v1::Lubricant&>(*stated);

@@ -72,10 +72,16 @@ void read_candidate_figure(const std::string& flag, const std::string& text,
                            v1::CandidateFigure& out, Complaints& complaints) {
   const std::size_t colon = text.rfind(':');
   const std::string kind = colon == std::string::npos ? "mean" : text.substr(colon + 1);
-  const std::string column = text.substr(0, colon);
+  std::string column = text.substr(0, colon);
+  const std::size_t slash = column.rfind('/');
+  if (slash != std::string::npos && slash > 0) {
+    out.set_campaign(resource_name("campaigns", column.substr(0, slash)));
+    column = column.substr(slash + 1);
+  }
   if (column.empty() || (kind != "mean" && kind != "min" && kind != "max")) {
     complaints.push_back(flag + ": '" + printable(text) +
-                         "' is not COLUMN, COLUMN:min, COLUMN:max or COLUMN:mean");
+                         "' is not COLUMN, COLUMN:min, COLUMN:max or COLUMN:mean, each also after "
+                         "CAMPAIGN/");
     return;
   }
   out.set_column(column);

@@ -11,8 +11,8 @@ namespace tribodyn::client {
 /// Adds --uncertainty, which states standard uncertainties of parameters.
 void add_uncertainty_flag(FlagList& list, std::vector<v1::ParameterUncertainty>& out);
 
-/// Reads "COLUMN", "COLUMN:min", "COLUMN:max" or "COLUMN:mean" into `out`. Adds a complaint about
-/// `flag`, and changes nothing, if the text is none of them.
+/// Reads "COLUMN", "COLUMN:min", "COLUMN:max" or "COLUMN:mean" into `out`, each also after the name
+/// of a campaign: "12/COLUMN". Adds a complaint about `flag` if the text is none of them.
 void read_candidate_figure(const std::string& flag, const std::string& text,
                            v1::CandidateFigure& out, Complaints& complaints);
 

@@ -64,6 +64,13 @@ interruption of client or server, and reads what is computed. It resumes a campa
 --campaign NAME` ranks a campaign without its table, with other --weights if they are stated, by the
 candidates' parameters in the units of their fields.
 
+--rig traction, film or stribeck runs the candidates on a ball on a disc in place of the axle, with the
+defaults of these commands and their settings: --load, --srr, --temperature, --radius and others;
+--entrainment-speed is their --speed. The candidates are ranked by least traction, on the rig for films
+by the thickest film, or by --least FIGURE or --most FIGURE. Each is a campaign of its own: `tribodyn
+campaigns pareto 12 --least 13/traction_coefficient` sets the loss of the axle in campaign 12 against the
+traction of the same candidates in campaign 13.
+
 Candidates that cannot be told apart from the best one at the --confidence are ties. Uncertainties of
 parameters in the table (--uncertainty, columns) are each candidate's own; those of all other
 parameters, stated there or by the base, are common to all candidates and nearly cancel.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/cpp/commands/result_files.h"
+#include "client/cpp/commands/rig_machine.h"
 #include "client/cpp/commands/rig_map.h"
 #include "client/cpp/commands/scenario.h"
 #include "client/cpp/report/rig_rows.h"
@@ -37,15 +38,13 @@ struct RigCommand {
   const char *speeds_text, *slides_text;  ///< the default lists in words
 };
 
-void set_disc(const std::string& material, v1::EvaluateRigRequest& request) {
-  request.clear_body_2();
-  if (material != "glass") return;
-  v1::RigBody& disc = *request.mutable_body_2();
-  disc.set_youngs_modulus_pascals(75e9);
-  disc.set_poissons_ratio(0.22);
-  disc.set_thermal_conductivity_watts_per_metre_kelvin(1.1);
-  disc.set_density_kilograms_per_cubic_metre(2500);
-  disc.set_specific_heat_capacity_joules_per_kilogram_kelvin(840);
+RigMachine machine_of(const RigCommand& rig) {
+  RigMachine out{{}, rig.settings};
+  out.request.set_radius_x_metres(rig.radius);
+  if (rig.has_glass_disc) set_disc("glass", out.request);
+  if (*rig.surface != 0) out.request.set_surface(resource_name("surfaces", rig.surface));
+  out.request.set_composite_rms_height_metres(rig.roughness);
+  return out;
 }
 
 void add_rig_flags(FlagList& list, RigFlags& flags, const RigCommand& rig) {
@@ -75,20 +74,17 @@ void add_rig_flags(FlagList& list, RigFlags& flags, const RigCommand& rig) {
   numbers("--supply-temperature-celsius,--temperature", {"C", "-70 to 200", "40"},
           "Temperatures of the oil at the inlet", &RigSettings::temperatures);
   v1::EvaluateRigRequest& request = flags.request;
-  request.set_radius_x_metres(rig.radius);
+  request = machine_of(rig).request;
   list.number("--radius-x-metres,--radius", {"m", "1e-5 to 1e4", significant(rig.radius, 5)},
               "Radius of the ball, e.g. 12.7mm; of a ring: along the motion",
               [&request](double value) { request.set_radius_x_metres(value); });
   list.number("--radius-y-metres", {"m", "1e-5 to 1e4", "0"},
               "Radius across the motion; 0: that along the motion",
               [&request](double value) { request.set_radius_y_metres(value); });
-  if (rig.has_glass_disc) set_disc("glass", request);
   list.choice("--disc", {"steel", "glass"},
               std::string("Material of the disc; the ball is of steel. Default: ") +
                   (rig.has_glass_disc ? "glass." : "steel."),
               [&request](int index) { set_disc(index == 0 ? "steel" : "glass", request); });
-  if (*rig.surface != 0) request.set_surface(resource_name("surfaces", rig.surface));
-  request.set_composite_rms_height_metres(rig.roughness);
   list.text("--surface", "NAME",
             std::string("Roughness and boundary friction of the specimens; smooth: none. "
                         "Default: ") +
@@ -150,15 +146,7 @@ v1::RigCondition rig_condition(double load, double speed, double slide, double t
 /// Evaluates every combination of the settings, and lists the conditions in the request.
 v1::EvaluateRigResponse evaluate_grid(const RigSettings& settings, Connection& connection,
                                       v1::EvaluateRigRequest& request) {
-  v1::RigGrid& grid = *request.mutable_grid();
-  const auto set = [](const std::vector<double>& values, auto& list) {
-    list = {values.begin(), values.end()};
-  };
-  set(settings.temperatures, *grid.mutable_supply_temperatures_celsius());
-  set(settings.loads, *grid.mutable_loads_newtons());
-  set(settings.mean_pressures, *grid.mutable_mean_pressures_pascals());
-  set(settings.speeds, *grid.mutable_entrainment_speeds_metres_per_second());
-  set(settings.slide_roll_ratios, *grid.mutable_slide_roll_ratios_percent());
+  *request.mutable_grid() = grid_of(settings);
   request.clear_conditions();
   v1::EvaluateRigResponse answer = connection.evaluate_rig(request);
   const std::size_t loads = settings.loads.size() + settings.mean_pressures.size();
@@ -277,68 +265,99 @@ Command rig_command(const RigCommand& rig) {
 constexpr char kSpeedField[] = "entrainment_speed_metres_per_second";
 constexpr char kSlideField[] = "slide_roll_ratio_percent";
 
+RigCommand traction_rig() {
+  return {
+      {"traction", "Traction of a ball on a disc", kSlideField, "traction_coefficient",
+       "Slide-roll ratio, % of the mean speed", "Traction coefficient", 1, false},
+      "traction of a ball on a disc against the slide-roll ratio",
+      "Computes traction curves of a ball on a disc by the contact of the axle: friction over "
+      "load, films, pressures, temperatures and shares. Nothing is stored. --isothermal shows the "
+      "isothermal figures beside the thermal ones. Default: a smooth 19.05 mm ball of steel on "
+      "steel.",
+      {"tribodyn traction paper-fluid-1 paper-fluid-2 --load 35.2 --speed 2.5 --plot traction.svg",
+       "tribodyn traction shell-t9 --radius 12.7mm --load 38,154 --speed 2 --temperature 25 "
+       "--isothermal"},
+      0.009525,
+      false,
+      "",
+      0,
+      {{35}, {2}, {0, 0.5, 1, 2, 3, 5, 7, 10, 15, 20, 30, 50}, {40}},
+      "2",
+      "0 to 50"};
+}
+
+RigCommand film_rig() {
+  return {{"film", "Film of a ball on a disc", kSpeedField, "central_film_thickness_metres",
+           "Entrainment speed, m/s", "Central film thickness, nm", 1e9, true},
+          "film of a ball on a disc against speed",
+          "Computes films of a ball on a disc, as optical interferometry measures them, by the "
+          "contact "
+          "of the axle. Nothing is stored. Films of fast or cold oils need --inlet-shear-heating. "
+          "Default: a smooth 19.05 mm ball of steel that rolls on glass.",
+          {"tribodyn film paper-fluid-1 paper-fluid-2 paper-fluid-3 --plot film.svg",
+           "tribodyn film paper-fluid-1 --temperature 40,100 --inlet-shear-heating --measured "
+           "film.csv"},
+          0.009525,
+          true,
+          "",
+          0,
+          {{20}, powers(0.03, 3, 6), {0}, {40}},
+          "0.03 to 3",
+          "0"};
+}
+
+RigCommand stribeck_rig() {
+  return {{"stribeck", "Stribeck curve of a ball on a disc", kSpeedField, "traction_coefficient",
+           "Entrainment speed, m/s", "Friction coefficient", 1, true},
+          "friction of a rough ball on a disc against speed",
+          "Computes Stribeck curves of a rough ball on a disc by the contact of the axle, from "
+          "boundary friction to full films. Nothing is stored. --isothermal shows the isothermal "
+          "figures beside the thermal ones. Default: a 19.05 mm ball of steel on steel, with the "
+          "boundary friction of run-in flanks and a height of 20 nm.",
+          {"tribodyn stribeck paper-fluid-1 --temperature 40,100 --plot stribeck.svg",
+           "tribodyn stribeck paper-fluid-1 --roughness 50nm --load 10,35 --output csv"},
+          0.009525,
+          false,
+          "run-in",
+          20e-9,
+          {{35}, powers(0.003, 3, 6), {50}, {40}},
+          "0.003 to 3",
+          "50"};
+}
+
 }  // namespace
 
-Command traction_command() {
-  return rig_command(
-      {{"traction", "Traction of a ball on a disc", kSlideField, "traction_coefficient",
-        "Slide-roll ratio, % of the mean speed", "Traction coefficient", 1, false},
-       "traction of a ball on a disc against the slide-roll ratio",
-       "Computes traction curves of a ball on a disc by the contact of the axle: friction over "
-       "load, films, pressures, temperatures and shares. Nothing is stored. --isothermal shows the "
-       "isothermal figures beside the thermal ones. Default: a smooth 19.05 mm ball of steel on "
-       "steel.",
-       {"tribodyn traction paper-fluid-1 paper-fluid-2 --load 35.2 --speed 2.5 --plot traction.svg",
-        "tribodyn traction shell-t9 --radius 12.7mm --load 38,154 --speed 2 --temperature 25 "
-        "--isothermal"},
-       0.009525,
-       false,
-       "",
-       0,
-       {{35}, {2}, {0, 0.5, 1, 2, 3, 5, 7, 10, 15, 20, 30, 50}, {40}},
-       "2",
-       "0 to 50"});
+void set_disc(const std::string& material, v1::EvaluateRigRequest& request) {
+  request.clear_body_2();
+  if (material != "glass") return;
+  v1::RigBody& disc = *request.mutable_body_2();
+  disc.set_youngs_modulus_pascals(75e9);
+  disc.set_poissons_ratio(0.22);
+  disc.set_thermal_conductivity_watts_per_metre_kelvin(1.1);
+  disc.set_density_kilograms_per_cubic_metre(2500);
+  disc.set_specific_heat_capacity_joules_per_kilogram_kelvin(840);
 }
 
-Command film_command() {
-  return rig_command(
-      {{"film", "Film of a ball on a disc", kSpeedField, "central_film_thickness_metres",
-        "Entrainment speed, m/s", "Central film thickness, nm", 1e9, true},
-       "film of a ball on a disc against speed",
-       "Computes films of a ball on a disc, as optical interferometry measures them, by the "
-       "contact "
-       "of the axle. Nothing is stored. Films of fast or cold oils need --inlet-shear-heating. "
-       "Default: a smooth 19.05 mm ball of steel that rolls on glass.",
-       {"tribodyn film paper-fluid-1 paper-fluid-2 paper-fluid-3 --plot film.svg",
-        "tribodyn film paper-fluid-1 --temperature 40,100 --inlet-shear-heating --measured "
-        "film.csv"},
-       0.009525,
-       true,
-       "",
-       0,
-       {{20}, powers(0.03, 3, 6), {0}, {40}},
-       "0.03 to 3",
-       "0"});
+RigMachine rig_machine(const std::string& command) {
+  if (command == "film") return machine_of(film_rig());
+  return machine_of(command == "stribeck" ? stribeck_rig() : traction_rig());
 }
 
-Command stribeck_command() {
-  return rig_command(
-      {{"stribeck", "Stribeck curve of a ball on a disc", kSpeedField, "traction_coefficient",
-        "Entrainment speed, m/s", "Friction coefficient", 1, true},
-       "friction of a rough ball on a disc against speed",
-       "Computes Stribeck curves of a rough ball on a disc by the contact of the axle, from "
-       "boundary friction to full films. Nothing is stored. --isothermal shows the isothermal "
-       "figures beside the thermal ones. Default: a 19.05 mm ball of steel on steel, with the "
-       "boundary friction of run-in flanks and a height of 20 nm.",
-       {"tribodyn stribeck paper-fluid-1 --temperature 40,100 --plot stribeck.svg",
-        "tribodyn stribeck paper-fluid-1 --roughness 50nm --load 10,35 --output csv"},
-       0.009525,
-       false,
-       "run-in",
-       20e-9,
-       {{35}, powers(0.003, 3, 6), {50}, {40}},
-       "0.003 to 3",
-       "50"});
+v1::RigGrid grid_of(const RigSettings& settings) {
+  v1::RigGrid grid;
+  const auto set = [](const std::vector<double>& values, auto& list) {
+    list = {values.begin(), values.end()};
+  };
+  set(settings.temperatures, *grid.mutable_supply_temperatures_celsius());
+  set(settings.loads, *grid.mutable_loads_newtons());
+  set(settings.mean_pressures, *grid.mutable_mean_pressures_pascals());
+  set(settings.speeds, *grid.mutable_entrainment_speeds_metres_per_second());
+  set(settings.slide_roll_ratios, *grid.mutable_slide_roll_ratios_percent());
+  return grid;
 }
+
+Command traction_command() { return rig_command(traction_rig()); }
+Command film_command() { return rig_command(film_rig()); }
+Command stribeck_command() { return rig_command(stribeck_rig()); }
 
 }  // namespace tribodyn::client

@@ -12,7 +12,9 @@
 #include "client/cpp/commands/resource_writes.h"
 #include "client/cpp/commands/result_files.h"
 #include "client/cpp/commands/scenario.h"
+#include "client/cpp/commands/screen_rig.h"
 #include "client/cpp/plot/screening_plot.h"
+#include "client/cpp/report/candidate_decisions.h"
 #include "client/cpp/report/screening.h"
 #include "client/cpp/report/screening_decisions.h"
 #include "client/cpp/report/screening_report.h"
@@ -22,6 +24,8 @@
 #include "client/cpp/service/campaign_run.h"
 #include "client/cpp/service/follow.h"
 #include "client/cpp/service/screening_campaign.h"
+#include "client/cpp/text/csv.h"
+#include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
 
@@ -44,6 +48,7 @@ struct ScreenFlags {
   std::string lubricant_filter;
   std::optional<v1::CampaignBudget> budget;
   v1::EvaluatePointsRequest request;  ///< without conditions
+  ScreenRigFlags rig;
   std::vector<double> speeds, sumps;
   std::vector<double> speed_weights, sump_weights;
   v1::PointCondition common;
@@ -143,6 +148,7 @@ void add_screen_flags(FlagList& list, ScreenFlags& flags) {
               request.set_vehicle(resource_name("vehicles", name));
             })
       .collection = "vehicles";
+  add_screen_rig_flags(list, flags.rig);
   list.group("Decisions");
   add_uncertainty_flag(list, flags.uncertainties);
   list.number("--confidence", {"-", "0.5 to 0.9999", "0.95"},
@@ -152,7 +158,9 @@ void add_screen_flags(FlagList& list, ScreenFlags& flags) {
               [&flags] { flags.leaves_out_uncertainty = true; });
   list.text("--pareto", "COLUMN",
             "Also print the Pareto front of least inefficiency and least COLUMN, a column of the "
-            "table, e.g. cost, or of --contact-figures, e.g. film_ratio_minimum.",
+            "table, e.g. cost, or of --contact-figures, e.g. film_ratio_minimum. Of a rig: of its "
+            "ranking and COLUMN, as the figures of `campaigns pareto`, e.g. "
+            "12/inefficiency_energy_mean_percent of campaign 12.",
             [&flags](const std::string& column) { flags.pareto_column = column; });
   list.toggle("--pareto-most", "In the Pareto front more of the column is better.",
               [&flags] { flags.wants_most = true; });
@@ -196,26 +204,46 @@ void check_weights(const char* flag, std::size_t weights, std::size_t values, co
                        "; give one for each");
 }
 
+/// Returns each flag that describes how the axle runs, and whether it is given.
+std::vector<std::pair<const char*, bool>> axle_flags(const ScreenFlags& flags) {
+  const v1::EvaluatePointsRequest& request = flags.request;
+  return {{"--speeds", !flags.speeds.empty()},
+          {"--sumps", !flags.sumps.empty()},
+          {"--ascent", flags.common.ascent_angle_degrees() != 0},
+          {"--inlet-temperature-rise-kelvin", flags.common.has_inlet_temperature_rise_kelvin()},
+          {"--gear-set", !request.gear_set().empty()},
+          {"--vehicle", !request.vehicle().empty()},
+          {"--tolerance", request.tolerance() != 0},
+          {"--contact-figures", request.contact_figures()}};
+}
+
+/// Checks that nothing concerns the axle alone.
+void check_rig_screen(const ScreenFlags& flags, Complaints& complaints) {
+  std::vector<std::pair<const char*, bool>> given = axle_flags(flags);
+  given.insert(given.end(), {{"--weights", !flags.speed_weights.empty()},
+                             {"--sump-weights", !flags.sump_weights.empty()},
+                             {"--jsonl", !flags.json_lines_path.empty()},
+                             {"--plot", !flags.plot_path.empty()}});
+  for (const auto& [flag, is_given] : given) {
+    if (!is_given) continue;
+    complaints.push_back(std::string(flag) + " and --rig: a rig has no such thing; leave out one");
+  }
+}
+
 /// Checks what a campaign has of its own.
 void check_campaign_flags(const ScreenFlags& flags, Complaints& complaints) {
   const v1::EvaluatePointsRequest& request = flags.request;
-  const std::pair<const char*, bool> given[] = {
+  std::vector<std::pair<const char*, bool>> given = {
       {"a table", !flags.path.empty()},
       {"--like", !request.lubricant().empty()},
       {"--lubricants", !flags.lubricants.empty()},
       {"--lubricant-filter", !flags.lubricant_filter.empty()},
       {"a design", has_design(flags)},
       {"--carry", !flags.carried.empty()},
-      {"--speeds", !flags.speeds.empty()},
-      {"--sumps", !flags.sumps.empty()},
-      {"--ascent", flags.common.ascent_angle_degrees() != 0},
-      {"--inlet-temperature-rise-kelvin", flags.common.has_inlet_temperature_rise_kelvin()},
-      {"--gear-set", !request.gear_set().empty()},
       {"--surface", !request.surface().empty()},
-      {"--vehicle", !request.vehicle().empty()},
-      {"--tolerance", request.tolerance() != 0},
-      {"--contact-figures", request.contact_figures()},
       {"options of the model", request.model_options().ByteSizeLong() > 0}};
+  for (const auto& each : axle_flags(flags)) given.push_back(each);
+  for (const auto& each : flags.rig.stated()) given.push_back(each);
   for (const auto& [flag, is_given] : given) {
     if (!is_given) continue;
     complaints.push_back(std::string(flag) + " and --campaign: the campaign has its own; give one");
@@ -253,6 +281,14 @@ void check_screen_flags(const ScreenFlags& flags, Complaints& complaints) {
   if (!flags.campaign.empty()) {
     check_campaign_flags(flags, complaints);
   } else {
+    check_screen_rig_flags(flags.rig, complaints);
+    if (!flags.rig.machine.empty()) {
+      check_rig_screen(flags, complaints);
+    } else if (!flags.rig.objectives.empty()) {
+      complaints.emplace_back(
+          "--least and --most apply to --rig; the axle is ranked by its inefficiency, and "
+          "`campaigns rank` by any figure");
+    }
     check_candidate_flags(flags, complaints);
     check_weights("--weights", flags.speed_weights.size(), flags.speeds.size(), "speeds",
                   complaints);
@@ -561,6 +597,138 @@ Decisions decisions_of(const ScreenFlags& flags, const Screening& screening,
   return out;
 }
 
+/// Returns the campaign of a rig that the command line describes. Says which rows of the table
+/// cannot be computed.
+v1::Campaign rig_campaign_request(const ScreenFlags& flags, Connection& connection,
+                                  std::string& model_version) {
+  constexpr std::size_t kMostNamed = 8;  // rows that cannot be computed
+  const std::string text =
+      flags.path.empty() ? std::string() : read_table_file(flags.path, kLargestFile);
+  const std::vector<std::string> lubricants = candidate_lubricants(flags, connection);
+  v1::EvaluateRigRequest rig = rig_of_screen(flags.rig, flags.request);
+  if (rig.lubricant().empty()) rig.set_lubricant(lubricants.front());
+  const v1::EvaluateRigResponse base = connection.evaluate_rig(rig);
+  model_version = base.model_version();
+  Screening screening;
+  screening.request.set_lubricant(base.lubricant_revision());
+  screening.request.set_surface(base.surface_revision());
+  *screening.request.mutable_model_options() = flags.request.model_options();
+  if (flags.path.empty()) {
+    v1::Campaign out = campaign_without_candidates(
+        screening,
+        lubricants.empty() ? "design" : std::to_string(lubricants.size()) + " lubricants");
+    if (has_design(flags)) *out.mutable_candidate_design() = design_message(flags.design);
+    *out.mutable_candidate_lubricants() = {lubricants.begin(), lubricants.end()};
+    set_rig(rig, out);
+    return out;
+  }
+  screening.bases.lubricant = connection.get<v1::Lubricant>(base.lubricant_revision());
+  if (!base.surface_revision().empty()) {
+    screening.bases.surface = connection.get<v1::Surface>(base.surface_revision());
+  }
+  const ResourcePointer stated =
+      base_of_rows(connection, kind_of(*v1::Lubricant::descriptor()), base.lubricant_revision());
+  screening.bases.stated = dynamic_cast<const v1::Lubricant&>(*stated);
+  CandidateTable& table = screening.table;
+  table = read_candidates(text, flags.path, screening.bases, flags.carried);
+  if (!table.note.empty()) std::cerr << "tribodyn: " << printable(table.note) << "\n";
+  characterise_candidates(connection, screening.bases, table);
+  check_candidate_ranges(connection.schema(), table);
+  std::size_t refused = 0;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (table.refusals[i].empty() || ++refused > kMostNamed) continue;
+    std::cerr << "tribodyn: " << printable(table.names[i])
+              << " is left out: " << printable(table.refusals[i]) << "\n";
+  }
+  if (refused > kMostNamed) std::cerr << "... and " << refused - kMostNamed << " others\n";
+  if (refused == table.size()) throw Failure(kExitFailed, "no candidate can be computed");
+  v1::Campaign out =
+      campaign_of(screening, flags.path == "-" ? "" : flags.path.substr(flags.path.rfind('/') + 1));
+  set_rig(rig, out);
+  return out;
+}
+
+/// Returns the campaign of a rig once it has ended or is paused, with its candidates.
+v1::Campaign computed_rig_campaign(const ScreenFlags& flags, Connection& connection,
+                                   const CommonOptions& options) {
+  std::string name = flags.campaign;
+  if (name.empty()) {
+    std::string model_version;
+    const v1::Campaign request = rig_campaign_request(flags, connection, model_version);
+    CreateCampaignOptions create;
+    create.request_id = screening_request_id(request, model_version);
+    name = connection.create_campaign(request, create).name();
+  }
+  go_on(flags, connection.get_campaign(name), connection);
+  follow_to_end(connection, name, options.progress_form());
+  return connection.get_campaign(name, v1::CAMPAIGN_VIEW_FULL);
+}
+
+/// Ranks a campaign of a rig, and finds what else the command line requests, by the service.
+int run_rig_screen(const ScreenFlags& flags, Connection& connection, const CommonOptions& options) {
+  const v1::Campaign campaign = computed_rig_campaign(flags, connection, options);
+  const bool is_complete = campaign.state() == v1::Campaign::SUCCEEDED;
+  if (!is_complete) report_stop(campaign, connection);
+  if (!flags.csv_path.empty()) {
+    write_file(flags.csv_path, [&](std::ostream& file) {
+      read_rig_rows(connection, campaign,
+                    [&file](const std::vector<std::string>& cells) { file << csv_line(cells); });
+    });
+  }
+  constexpr int kMostRanked = 1000;  // that the service returns
+  const OutputFormat format = options.output_format;
+  v1::RankCandidatesRequest ranking;
+  ranking.set_name(campaign.name());
+  ranking.set_count(format == OutputFormat::kTable ? std::min(flags.top, kMostRanked)
+                                                   : kMostRanked);
+  *ranking.mutable_objective() =
+      flags.rig.objectives.empty() ? usual_objective(campaign) : flags.rig.objectives.front();
+  ranking.set_confidence(flags.confidence);
+  ranking.set_ignore_stated_uncertainties(flags.leaves_out_uncertainty);
+  if (!flags.leaves_out_uncertainty) {
+    *ranking.mutable_uncertainties() = {flags.uncertainties.begin(), flags.uncertainties.end()};
+  }
+  const v1::RankCandidatesResponse best = connection.rank_candidates(ranking);
+  const bool is_json = format == OutputFormat::kJson;
+  std::string out = ranking_answer_text(ranking, best, format);
+  if (is_json) {
+    out = "{\n\"campaign\": " + json_quoted(campaign.name()) + ",\n\"ranking\": " + out;
+  }
+  const auto add = [&](const char* member, const std::string& text) {
+    out += is_json ? std::string(",\n\"") + member + "\": " + text : "\n" + text;
+  };
+  if (!flags.pareto_column.empty()) {
+    v1::FindParetoCandidatesRequest request;
+    request.set_name(campaign.name());
+    *request.mutable_first() = ranking.objective();
+    request.mutable_second()->set_wants_most(flags.wants_most);
+    Complaints complaints;
+    read_candidate_figure("--pareto", flags.pareto_column,
+                          *request.mutable_second()->mutable_figure(), complaints);
+    if (!complaints.empty()) throw Failure(kExitUsage, joined(complaints, "\n"));
+    add("pareto_front",
+        front_answer_text(request, connection.find_pareto_candidates(request), format));
+  }
+  if (flags.wants_effects) {
+    v1::EstimateCandidateEffectsRequest request;
+    request.set_name(campaign.name());
+    *request.mutable_figure() = ranking.objective().figure();
+    add("main_effects",
+        effects_answer_text(request, connection.estimate_candidate_effects(request), format));
+  }
+  if (format == OutputFormat::kTable) {
+    const std::string program = program_of(connection), id = resource_id(campaign.name());
+    Sheet sheet;
+    sheet.remark("The server keeps the figures as " + campaign.name() + ": `" + program +
+                 " screen --campaign " + id + "` ranks them again, `" + program +
+                 " campaigns columns " + id + "` prints them, `" + program + " campaigns delete " +
+                 id + "` deletes them.");
+    out += "\n" + sheet.text();
+  }
+  std::cout << out << (is_json ? "}\n" : "");
+  return is_complete && !best.candidates().empty() ? kExitOk : kExitFailed;
+}
+
 int run_screen(ScreenFlags& flags, const CommonOptions& options) {
   const bool has_decisions = !flags.pareto_column.empty() || flags.wants_effects;
   if (options.output_format == OutputFormat::kCsv && has_decisions && flags.plot_path.empty()) {
@@ -570,6 +738,18 @@ int run_screen(ScreenFlags& flags, const CommonOptions& options) {
         "or draw them with --plot");
   }
   Connection connection = options.connect();
+  if (!flags.campaign.empty() && connection.get_campaign(flags.campaign).has_rig()) {
+    Complaints complaints;
+    check_rig_screen(flags, complaints);
+    if (!complaints.empty()) throw Failure(kExitUsage, joined(complaints, "\n"));
+    return run_rig_screen(flags, connection, options);
+  }
+  if (!flags.rig.machine.empty()) return run_rig_screen(flags, connection, options);
+  if (!flags.rig.objectives.empty()) {
+    throw Failure(kExitUsage, "--least and --most: " + flags.campaign +
+                                  " is of the axle, which is ranked by "
+                                  "its inefficiency; `campaigns rank` ranks by any figure");
+  }
   const v1::Schema schema = connection.schema();
   Screening screening;
   const bool is_complete = compute(flags, schema, connection, options, screening);
@@ -617,16 +797,19 @@ Command screen_command() {
        "tribodyn screen candidates.csv --like my-oil --output csv",
        "tribodyn screen --lubricants my-oil,your-oil,paper-fluid-2 --speeds 20,60",
        "tribodyn screen --like my-oil --range relaxation-time=0.2us:0.6us --count 128",
-       "tribodyn screen --campaign 12 --weights 2,1,1"},
+       "tribodyn screen --campaign 12 --weights 2,1,1",
+       "tribodyn screen candidates.csv --like my-oil --rig traction --load 35 --srr 5,20,50",
+       "tribodyn screen candidates.csv --like my-oil --rig stribeck --pareto "
+       "12/inefficiency_energy_mean_percent"},
       {},
       {},
       {}};
   add_screen_flags(command.flags, *flags);
   command.check = [flags](Complaints& complaints) { check_screen_flags(*flags, complaints); };
-  command.main_flags = {"table",     "--like",        "--speeds",   "--sumps",
-                        "--weights", "--uncertainty", "--pareto",   "--plot",
-                        "--effects", "--top",         "--csv",      "--surface",
-                        "--range",   "--gear-set",    "--campaign", "--lubricants"};
+  command.main_flags = {"table",         "--like",    "--speeds", "--sumps",    "--weights",
+                        "--uncertainty", "--pareto",  "--plot",   "--effects",  "--top",
+                        "--csv",         "--surface", "--range",  "--gear-set", "--campaign",
+                        "--lubricants",  "--rig"};
   command.run = [flags](const CommonOptions& options) { return run_screen(*flags, options); };
   return command;
 }

@@ -2,7 +2,8 @@ import { get, url } from './api/client';
 import type { Campaign } from './api/types';
 import { inputWords } from './comparison';
 import { FIGURES, figureWords } from './figures';
-import { celsius, kelvin, metres, pascals, perPascal, plain, scaled, watts, type Unit } from './units';
+import { rounded } from './format';
+import { celsius, kelvin, metres, pascals, perPascal, plain, scaled, shown, watts, type Unit } from './units';
 
 /** What a column is to the reader: chosen by whoever made the campaign, or computed. */
 export type ColumnKind = 'candidate' | 'condition' | 'figure';
@@ -55,8 +56,28 @@ const CONDITIONS: Record<string, string> = {
   inlet_temperature_rise_kelvin: 'Rise to the inlet',
 };
 
+/** Conditions of a rig; the server computes loads from mean pressures. */
+const RIG_CONDITIONS: Record<string, string> = {
+  load_newtons: 'Load', entrainment_speed_metres_per_second: 'Entrainment speed', slide_roll_ratio_percent: 'Slide-roll ratio',
+  supply_temperature_celsius: 'Oil',
+};
+
+/** The figure by which candidates are ranked if nothing else is chosen. */
+export const usualFigure = (campaign: Campaign): string => (campaign.rig ? 'traction_coefficient' : 'inefficiency_energy_mean_percent');
+
+/** The number of conditions of a campaign, of the axle or of a rig. */
+export const conditionsOf = (campaign: Campaign): number => (campaign.points ?? 0) / (campaign.candidates ?? 1);
+
+/** The conditions of a rig in words, in their order. */
+export function rigConditions(campaign: Campaign, rows: Rows): string[] {
+  const columns = rows.columns.filter((each) => RIG_CONDITIONS[each.name]);
+  return Array.from({ length: conditionsOf(campaign) }, (_, k) =>
+    columns.map(({ unit, values }) => (values[k] == null ? '' : `${rounded(shown(values[k]!, unit))} ${unit.symbol}`)).join(', '));
+}
+
 function labelOf(name: string, kind: ColumnKind): string {
-  if (CONDITIONS[name]) return CONDITIONS[name]!;
+  const condition = CONDITIONS[name] ?? RIG_CONDITIONS[name];
+  if (condition) return condition;
   if (name.startsWith(ELASTICITY)) {
     const [, figure, ...parameter] = name.split('.');
     return `${figureWords(figure!)} by ${inputWords(parameter.join('.')).toLowerCase()}, elasticity`;
@@ -71,7 +92,7 @@ function labelOf(name: string, kind: ColumnKind): string {
 export async function readRows(campaign: Campaign, signal: AbortSignal): Promise<Rows> {
   const factors = (campaign.candidate_columns ?? []).map((each) => each.path!);
   const attributes = (campaign.candidate_attributes ?? []).filter((each) => (each.texts ?? []).length === 0).map((each) => each.name!);
-  const states = Object.keys(CONDITIONS).filter((name) => new Set((campaign.conditions ?? []).map((each) => each[name as keyof typeof each])).size > 1);
+  const states = campaign.rig ? Object.keys(RIG_CONDITIONS) : Object.keys(CONDITIONS).filter((name) => new Set((campaign.conditions ?? []).map((each) => each[name as keyof typeof each])).size > 1);
   const read = (columns: string[]) => get<Table>(url(`${campaign.name}:read`, { alt: 'columns', columns, row_count: MOST_ROWS }), signal);
   const [figures, inputs] = await Promise.all([read([]), read(['candidate', 'condition', ...states, ...factors, ...attributes])]);
   const columnsOf = (table: Table, names: string[], kind: ColumnKind): Column[] =>

@@ -364,3 +364,27 @@ test('a further table adds candidates to a campaign and leaves what is computed'
   assert.deepEqual(after.columns.mesh_loss_power_watts.slice(0, 24), before.columns.mesh_loss_power_watts);
   assert.deepEqual(page.complaints, []);
 });
+
+test('a campaign of a rig is ranked by traction and shows its conditions', async () => {
+  const rig = { radius_x_metres: 0.0127, grid: { supply_temperatures_celsius: [40], loads_newtons: [35], entrainment_speeds_metres_per_second: [2], slide_roll_ratios_percent: [5, 50] } };
+  const { name } = await server.call('POST', '/v1/campaigns', campaignOf(12, { display_name: 'on a rig', conditions: undefined, surface: 'surfaces/run-in', rig }));
+  while ((await server.call('GET', `/v1/${name}`)).state === 'RUNNING') await new Promise((done) => setTimeout(done, 50));
+  await page.goto(`${server.address}/campaigns`);
+  await page.getByText('of a rig').waitFor();
+  await page.goto(`${server.address}/${name}`);
+  await page.getByText('at 2 conditions; rig, run-in').waitFor();
+  await page.locator('.ranking tbody tr').nth(11).waitFor();
+  assert.match(await page.locator('.ranking thead').textContent(), /Traction coefficient/);
+  assert.deepEqual(await foreignNumbers(page), []);
+  await page.goto(`${server.address}/${name}?view=pareto`);
+  await page.getByText('are beaten', { exact: false }).first().waitFor();
+  await page.goto(`${server.address}/${name}?view=rows&at=1`);
+  const condition = page.getByLabel('Condition');
+  await condition.waitFor();
+  const texts = await condition.locator('option').allTextContents();
+  assert.equal(texts.length, 3);
+  assert.match(texts[1], /^35(\.0+)? N, 2(\.0+)? m\/s, 50(\.0+)? %, 40(\.0+)? °C$/);
+  const header = await page.locator('.rows thead').textContent();
+  for (const each of ['Traction coefficient', 'Central film thickness', 'Film ratio', 'Contact temperature']) assert.ok(header.includes(each), each);
+  assert.deepEqual(await foreignNumbers(page), []);
+});

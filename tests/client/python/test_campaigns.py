@@ -311,3 +311,50 @@ def test_campaigns_are_found_by_label(client):
     assert names == [campaign.name]
     campaign.update(labels={})
     assert client.campaigns(filter='labels.series = "found by label"') == []
+
+
+def test_candidates_run_on_a_rig_beside_the_axle(client):
+    rig = tribodyn.Rig(
+        "12.7mm",
+        entrainment_speeds_metres_per_second=2,
+        mean_pressures_pascals=["0.6 GPa", "0.9 GPa"],
+        slide_roll_ratios_percent=[2, 10, 50],
+    )
+    table = variants(12)[["name", "treat rate", "lubricant.relaxation_time"]]
+    on_rig = client.screen(table, FLUID, rig=rig)
+    on_rig.wait()
+    rows = on_rig.frame()
+    assert list(rows["slide_roll_ratio_percent"][:6]) == [2, 10, 50, 2, 10, 50]
+    assert set(rows["status"]) == {"OK"} and rows["film_ratio"].isna().all()
+    one = client.rig(
+        FLUID,
+        radius_x_metres="12.7mm",
+        mean_pressures_pascals=["0.6 GPa", "0.9 GPa"],
+        entrainment_speeds_metres_per_second=2,
+        slide_roll_ratios_percent=[2, 10, 50],
+    )
+    assert list(rows["load_newtons"][:6]) == list(one["load_newtons"])
+    films = rows["central_film_thickness_metres"]  # the relaxation time has no effect on them
+    assert list(films[-6:]) == list(one["central_film_thickness_metres"])
+    best = on_rig.ranking()
+    assert list(best["traction_coefficient"]) == sorted(best["traction_coefficient"])
+    assert best["traction_coefficient"].iloc[0] == pytest.approx(
+        rows.groupby("name")["traction_coefficient"].mean().min(), rel=1e-12
+    )
+    assert best.attrs["gear_set"] == ""
+    assert on_rig.effects().attrs["candidates"] == 12
+    again = client.screen(table, FLUID, rig=rig)
+    assert again.name == on_rig.name
+
+    on_axle = client.screen(table, FLUID)
+    on_axle.wait()
+    figure = f"{on_rig.name}/traction_coefficient:max"
+    front = on_axle.pareto(figure)
+    assert set(front[figure]) <= set(rows.groupby("name")["traction_coefficient"].max())
+
+    with pytest.raises(tribodyn.TribodynError) as error:
+        client.screen(table, FLUID, rig=rig, speeds_kilometres_per_hour=[50], gear_set="x")
+    assert {each.field for each in error.value.violations} == {
+        "speeds_kilometres_per_hour",
+        "gear_set",
+    }

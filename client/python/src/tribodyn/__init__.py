@@ -7,7 +7,7 @@
 ``tribodyn.aio.Client`` has the same methods as coroutines. ``tribodyn.v1`` holds the messages.
 """
 
-from tribodyn._candidates import Design, Lubricants
+from tribodyn._candidates import Design, Lubricants, Rig
 from tribodyn._frames import Table
 from tribodyn._profiles import Profile
 from tribodyn._studies import Options
@@ -25,6 +25,7 @@ __all__ = [
     "Quantity",
     "QuantityError",
     "Resources",
+    "Rig",
     "Table",
     "TribodynError",
     "Violation",

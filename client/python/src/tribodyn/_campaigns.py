@@ -9,7 +9,7 @@ from typing import Any, AsyncGenerator, Container, Mapping, Sequence
 
 import numpy as np
 
-from tribodyn._candidates import Design, Lubricants
+from tribodyn._candidates import Design, Lubricants, Rig
 from tribodyn._columns import read_columns
 from tribodyn._csv import table_rows
 from tribodyn._evaluate import CONDITION, Extras, parameter_path, read_varied
@@ -20,7 +20,7 @@ from tribodyn._transport import Backoff, Transport, new_request_id
 from tribodyn.errors import TribodynError
 from tribodyn.units import Quantity
 from tribodyn.v1 import campaigns_pb2 as pb
-from tribodyn.v1 import lubricants_pb2, points_pb2, results_pb2, surfaces_pb2
+from tribodyn.v1 import lubricants_pb2, points_pb2, results_pb2, rigs_pb2, surfaces_pb2
 
 _SERVICE = "CampaignService"
 # Pauses between two looks at a campaign [s]: a small one ends after some milliseconds, and a large
@@ -31,6 +31,24 @@ _NOT_COMPUTED = -1  # in refusal_number
 _DEFAULTS = {"sump_temperature_celsius": 40.0, "inlet_temperature_rise_kelvin": 20.0}
 _STATUS = ("status", "status_message")
 _FIGURE = "inefficiency_energy_mean_percent"
+# Columns of a campaign of a rig: its conditions, which the server computes, and its figures.
+_RIG_COLUMNS = [
+    "load_newtons",
+    "entrainment_speed_metres_per_second",
+    "slide_roll_ratio_percent",
+    "supply_temperature_celsius",
+    "traction_coefficient",
+    "central_film_thickness_metres",
+    "minimum_film_thickness_metres",
+    "film_ratio",
+    "mean_pressure_pascals",
+    "maximum_pressure_pascals",
+    "contact_temperature_kelvin",
+    "flash_temperature_rise_kelvin",
+    "boundary_friction_share",
+    "limiting_stress_area_share",
+]
+_RIG_FIGURE = "traction_coefficient"
 _COLLECTIONS = {
     "lubricant": "lubricants",
     "gear_set": "gearSets",
@@ -92,7 +110,7 @@ class AsyncCampaign:
         details = await self._full()
         own = _OwnColumns(details)
         names = [columns] if isinstance(columns, str) else list(columns)
-        figures = Extras.of(details).columns()
+        figures = _RIG_COLUMNS if details.HasField("rig") else Extras.of(details).columns()
         names = names or [*own.names(), *figures, *_STATUS]
         arguments = Arguments()
         known = {*own.names(), *figures, *_STATUS, "candidate", "condition", "row"}
@@ -126,7 +144,7 @@ class AsyncCampaign:
 
     async def ranking(
         self,
-        by: str = _FIGURE,
+        by: str | None = None,
         *,
         most: bool = False,
         where: Mapping[str, tuple[float | None, float | None]] | None = None,
@@ -137,6 +155,7 @@ class AsyncCampaign:
         count: int = 1000,
     ) -> Frame:
         arguments = Arguments()
+        by = by or self._usual_figure()
         request = pb.RankCandidatesRequest(
             name=self.name,
             objective=_objective(arguments, "by", by, most),
@@ -175,12 +194,13 @@ class AsyncCampaign:
         second: str,
         *,
         second_most: bool = False,
-        first: str = _FIGURE,
+        first: str | None = None,
         first_most: bool = False,
         where: Mapping[str, tuple[float | None, float | None]] | None = None,
         condition_weights: Sequence[float] = (),
     ) -> Frame:
         arguments = Arguments()
+        first = first or self._usual_figure()
         request = pb.FindParetoCandidatesRequest(
             name=self.name,
             first=_objective(arguments, "first", first, first_most),
@@ -201,7 +221,7 @@ class AsyncCampaign:
 
     async def effects(
         self,
-        figure: str = _FIGURE,
+        figure: str | None = None,
         *,
         columns: Sequence[str] = (),
         where: Mapping[str, tuple[float | None, float | None]] | None = None,
@@ -209,6 +229,7 @@ class AsyncCampaign:
         coverage: float = 0.95,
     ) -> Frame:
         arguments = Arguments()
+        figure = figure or self._usual_figure()
         request = pb.EstimateCandidateEffectsRequest(
             name=self.name,
             figure=_figure(arguments, "figure", figure),
@@ -263,6 +284,9 @@ class AsyncCampaign:
         )
         return await self._transport.call(_SERVICE, "PromoteCandidate", request)
 
+    def _usual_figure(self) -> str:
+        return _RIG_FIGURE if self.message.HasField("rig") else _FIGURE
+
     async def _decide(self, method: str, request: Any) -> Any:
         return await self._transport.call(_SERVICE, method, request, patient=True)
 
@@ -274,7 +298,7 @@ class AsyncCampaign:
     async def _candidates_to(self, rows: int) -> pb.Campaign:
         """Returns the campaign with the candidates of all rows: others may have been added."""
         details = await self._full()
-        if rows > details.candidates * len(details.conditions):
+        if rows > details.points:
             self._details = None
         return await self._full()
 
@@ -284,9 +308,10 @@ class AsyncCampaign:
         """Returns a table of candidates: what they were created with, their numbers and `cells`."""
         details = await self._full()
         count = max(candidates, default=-1) + 1
-        details = await self._candidates_to(count * len(details.conditions))
+        conditions = details.points // details.candidates
+        details = await self._candidates_to(count * conditions)
         own = _OwnColumns(details)
-        rows = np.array(candidates, dtype=int) * len(details.conditions)
+        rows = np.array(candidates, dtype=int) * conditions
         out = {name: own.column(name, rows) for name in own.of_candidates()}
         out["candidate"] = np.array(candidates, dtype=int)
         return frame({**out, **cells}, {**self._attrs(), **attrs})
@@ -419,10 +444,11 @@ class AsyncCampaign:
 
 
 class _OwnColumns:
-    """Columns that a campaign was created with."""
+    """Columns that a campaign was created with, but for the conditions of a rig."""
 
     def __init__(self, campaign: pb.Campaign) -> None:
         self._conditions = campaign.conditions
+        self._condition_count = campaign.points // campaign.candidates
         self._of_candidates: dict[str, np.ndarray] = {}
         for each in campaign.candidate_attributes:
             values = np.array(each.texts, dtype=object) if each.texts else np.array(each.values)
@@ -434,7 +460,7 @@ class _OwnColumns:
         return list(self._of_candidates)
 
     def names(self) -> list[str]:
-        return [*self._of_candidates, *CONDITION]
+        return [*self._of_candidates, *(CONDITION if self._conditions else [])]
 
     def of_candidate(self, name: str, candidate: int) -> Any:
         """Returns what a candidate has in one of its columns."""
@@ -442,7 +468,7 @@ class _OwnColumns:
 
     def column(self, name: str, rows: np.ndarray) -> np.ndarray:
         """Returns the values of a column in some rows."""
-        candidates, conditions = np.divmod(rows, len(self._conditions))
+        candidates, conditions = np.divmod(rows, self._condition_count)
         if name == "candidate":
             return candidates
         if name == "condition":
@@ -458,8 +484,10 @@ class _OwnColumns:
 
 
 def _figure(arguments: Arguments, argument: str, text: str) -> pb.CandidateFigure:
-    """Reads "COLUMN", "COLUMN:min", "COLUMN:max" or "COLUMN:mean"."""
-    column, _, word = text.partition(":")
+    """Reads "COLUMN", "COLUMN:min", "COLUMN:max" or "COLUMN:mean", each also of another campaign:
+    "12/COLUMN"."""
+    stated, _, word = text.partition(":")
+    campaign, _, column = stated.rpartition("/")
     kinds = {
         "": pb.CandidateFigure.MEAN,
         "mean": pb.CandidateFigure.MEAN,
@@ -468,7 +496,11 @@ def _figure(arguments: Arguments, argument: str, text: str) -> pb.CandidateFigur
     }
     if word not in kinds or not column:
         arguments.wrong(argument, f"{text} is not COLUMN, COLUMN:min, COLUMN:max or COLUMN:mean")
-    return pb.CandidateFigure(column=column, aggregate=kinds.get(word, pb.CandidateFigure.MEAN))
+    return pb.CandidateFigure(
+        column=column,
+        aggregate=kinds.get(word, pb.CandidateFigure.MEAN),
+        campaign=full_name("campaigns", campaign),
+    )
 
 
 def _objective(
@@ -535,8 +567,9 @@ async def start_campaign(
     table: Any,
     *,
     base: Mapping[str, str | None],
-    speeds: Sequence[Quantity],
-    sumps: Sequence[Quantity],
+    rig: Rig | None,
+    speeds: Sequence[Quantity] | None,
+    sumps: Sequence[Quantity] | None,
     speed_weights: Sequence[float] | None,
     sump_weights: Sequence[float] | None,
     ascent_angle_degrees: Quantity | None,
@@ -558,6 +591,25 @@ async def start_campaign(
     campaign = pb.Campaign(display_name=display_name, tolerance=tolerance or 0.0)
     set_switches(arguments, "model_options", model_options, campaign.model_options)
     Extras.read(arguments, contact_figures, elasticities, elasticity_figures).set(campaign)
+    if rig is not None:
+        rig.set(arguments, campaign)
+        of_axle = {
+            "speeds_kilometres_per_hour": speeds,
+            "sump_temperatures_celsius": sumps,
+            "speed_weights": speed_weights,
+            "sump_weights": sump_weights,
+            "ascent_angle_degrees": ascent_angle_degrees,
+            "inlet_temperature_rise_kelvin": inlet_temperature_rise_kelvin,
+            "gear_set": base["gear_set"],
+            "vehicle": base["vehicle"],
+            "tolerance": tolerance,
+        }
+        for name, given in of_axle.items():
+            if given is not None:
+                arguments.wrong(name, f"{name} and rig: a rig has no such thing; leave out one")
+        speeds, sumps, base = [], [], {**base, "gear_set": None, "vehicle": None}
+    speeds = [60] if speeds is None else list(speeds)
+    sumps = [40] if sumps is None else list(sumps)
     for sump in sumps:
         for speed in speeds:
             condition = campaign.conditions.add()
@@ -649,6 +701,8 @@ async def _found_lubricants(transport: Transport, campaign: pb.Campaign) -> list
 
 async def _pin(transport: Transport, campaign: pb.Campaign, base: Mapping[str, str | None]) -> str:
     """Sets the revisions of the base, and returns the version of the model."""
+    if campaign.HasField("rig"):
+        return await _pin_rig(transport, campaign, base)
     request = points_pb2.EvaluatePointsRequest(
         model_options=campaign.model_options,
         tolerance=campaign.tolerance,
@@ -661,6 +715,25 @@ async def _pin(transport: Transport, campaign: pb.Campaign, base: Mapping[str, s
     answer = await transport.call("PointService", "EvaluatePoints", request, patient=True)
     for kind in _COLLECTIONS:
         setattr(campaign, kind, getattr(answer, kind + "_revision"))
+    return answer.model_version
+
+
+async def _pin_rig(
+    transport: Transport, campaign: pb.Campaign, base: Mapping[str, str | None]
+) -> str:
+    """As _pin(), of a rig."""
+    request = rigs_pb2.EvaluateRigRequest(
+        lubricant=full_name("lubricants", base["lubricant"] or ""),
+        surface=full_name("surfaces", base["surface"] or ""),
+        model_options=campaign.model_options,
+    )
+    for field, value in campaign.rig.ListFields():
+        if field.message_type is None:
+            setattr(request, field.name, value)
+        else:
+            getattr(request, field.name).CopyFrom(value)
+    answer = await transport.call("RigService", "EvaluateRig", request, patient=True)
+    campaign.lubricant, campaign.surface = answer.lubricant_revision, answer.surface_revision
     return answer.model_version
 
 

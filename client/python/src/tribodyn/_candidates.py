@@ -1,4 +1,4 @@
-"""Candidates of a campaign that the server makes or finds."""
+"""Candidates of a campaign that the server makes or finds, and the rig that they run on."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ from dataclasses import dataclass, field
 from typing import Any, Mapping, Sequence
 
 from tribodyn._evaluate import parameter_path, read_varied
+from tribodyn._maps import numbers
 from tribodyn._studies import Arguments, full_name
 from tribodyn.units import Quantity
 from tribodyn.v1 import campaigns_pb2 as pb
+from tribodyn.v1.rigs_pb2 import RigBody
 
 _METHODS = {
     "grid": pb.CandidateDesign.GRID,
@@ -91,3 +93,35 @@ class Lubricants:
         """Writes the lubricants to a request."""
         campaign.candidate_lubricants.extend(full_name("lubricants", name) for name in self.names)
         campaign.lubricant_filter = self.filter
+
+
+@dataclass(frozen=True)
+class Rig:
+    """A ball or barrelled ring on a disc, at every combination of its settings, on which candidates
+    run in place of the axle. As of client.rig()."""
+
+    radius_x_metres: Quantity  #: effective radius along the motion, e.g. "12.7mm"
+    #: mean speeds of both surfaces
+    entrainment_speeds_metres_per_second: Quantity | Sequence[Quantity]
+    loads_newtons: Quantity | Sequence[Quantity] | None = None  #: either these or mean pressures
+    mean_pressures_pascals: Quantity | Sequence[Quantity] | None = None  #: of the dry contact
+    slide_roll_ratios_percent: Quantity | Sequence[Quantity] = 0
+    supply_temperatures_celsius: Quantity | Sequence[Quantity] = 40
+    radius_y_metres: Quantity = 0  #: across the motion; 0: a ball
+    composite_rms_height_metres: Quantity = 0  #: 0: that of the surface
+    body_1: Mapping[str, float] | None = None  #: ball or ring: fields of RigBody; None: steel
+    body_2: Mapping[str, float] | None = None  #: disc, likewise
+
+    def set(self, arguments: Arguments, campaign: pb.Campaign) -> None:
+        """Writes the rig to a request."""
+        rig = campaign.rig
+        for name in ("radius_x_metres", "radius_y_metres", "composite_rms_height_metres"):
+            setattr(rig, name, arguments.number(name, getattr(self, name)))
+        for name in ("body_1", "body_2"):
+            body = getattr(self, name)
+            if body is not None:
+                getattr(rig, name).CopyFrom(RigBody(**body))
+        for each in rig.grid.DESCRIPTOR.fields:
+            values = getattr(self, each.name)
+            if values is not None:
+                getattr(rig.grid, each.name).extend(numbers(arguments, each.name, values))

@@ -18,9 +18,10 @@ from tribodyn.v1 import rigs_pb2, spectra_pb2, viscosities_pb2
 _LOADS = ("loads_newtons", "mean_pressures_pascals")
 
 
-def _numbers(
+def numbers(
     arguments: Arguments, name: str, values: Quantity | Sequence[Quantity]
 ) -> list[float]:
+    """Reads one value or several."""
     listed = [values] if isinstance(values, (str, float, int)) else values
     return [arguments.number(name, each) for each in listed]
 
@@ -44,8 +45,8 @@ async def viscosity(
     arguments = Arguments()
     request = viscosities_pb2.EvaluateViscosityRequest(
         lubricant=full_name("lubricants", lubricant),
-        temperatures_celsius=_numbers(arguments, "temperatures_celsius", temperatures_celsius),
-        pressures_pascals=_numbers(arguments, "pressures_pascals", pressures_pascals),
+        temperatures_celsius=numbers(arguments, "temperatures_celsius", temperatures_celsius),
+        pressures_pascals=numbers(arguments, "pressures_pascals", pressures_pascals),
     )
     set_switches(arguments, "model_options", model_options, request.model_options)
     arguments.check()
@@ -80,7 +81,7 @@ async def rig(
     arguments = Arguments()
     for name, values in settings.items():
         if values is not None:
-            getattr(request.grid, name).extend(_numbers(arguments, name, values))
+            getattr(request.grid, name).extend(numbers(arguments, name, values))
     set_switches(arguments, "model_options", model_options, request.model_options)
     arguments.check()
     answer = await transport.call("RigService", "EvaluateRig", request)

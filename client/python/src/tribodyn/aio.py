@@ -10,6 +10,7 @@ from typing import Any, Callable, Mapping, Sequence
 
 from tribodyn import _cycles, _maps, _points, _profiles, _studies, _uncertainty
 from tribodyn._campaigns import AsyncCampaign, start_campaign
+from tribodyn._candidates import Rig
 from tribodyn._columns import read_columns
 from tribodyn._csv import rows_of
 from tribodyn._evaluate import Evaluation, is_parameter
@@ -585,8 +586,9 @@ class Client:
         table: Any,
         lubricant: str | None = None,
         *,
-        speeds_kilometres_per_hour: Sequence[Quantity] = (60,),
-        sump_temperatures_celsius: Sequence[Quantity] = (40,),
+        rig: Rig | None = None,
+        speeds_kilometres_per_hour: Sequence[Quantity] | None = None,
+        sump_temperatures_celsius: Sequence[Quantity] | None = None,
         speed_weights: Sequence[float] | None = None,
         sump_weights: Sequence[float] | None = None,
         ascent_angle_degrees: Quantity | None = None,
@@ -615,8 +617,9 @@ class Client:
                 "surface": surface,
                 "vehicle": vehicle,
             },
-            speeds=list(speeds_kilometres_per_hour),
-            sumps=list(sump_temperatures_celsius),
+            rig=rig,
+            speeds=speeds_kilometres_per_hour,
+            sumps=sump_temperatures_celsius,
             speed_weights=speed_weights,
             sump_weights=sump_weights,
             ascent_angle_degrees=ascent_angle_degrees,

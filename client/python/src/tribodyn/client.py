@@ -13,6 +13,7 @@ from google.protobuf.message import Message
 
 from tribodyn import aio
 from tribodyn._campaigns import AsyncCampaign
+from tribodyn._candidates import Rig
 from tribodyn._frames import Frame
 from tribodyn._resources import AsyncResources
 from tribodyn._profiles import Profile
@@ -250,7 +251,7 @@ class Campaign:
 
     def ranking(
         self,
-        by: str = "inefficiency_energy_mean_percent",
+        by: str | None = None,
         *,
         most: bool = False,
         where: Mapping[str, tuple[float | None, float | None]] | None = None,
@@ -261,10 +262,12 @@ class Campaign:
         count: int = 1000,
     ) -> Frame:
         """Returns a table of the ``count`` best candidates (at most 1000), one a row, finished or not:
-        those with least of the figure ``by`` first, or with most of it if ``most``.
+        those with least of the figure ``by`` first, or with most of it if ``most``. None: the mean
+        inefficiency, of a rig the traction coefficient.
 
         A figure is a column with values, alone for its mean over the conditions with their weights,
-        or with ":min" or ":max": "film_ratio_minimum:min". ``where`` maps figures to (minimum,
+        or with ":min" or ":max": "film_ratio_minimum:min"; of another campaign with the same
+        candidates, "12/traction_coefficient:max". ``where`` maps figures to (minimum,
         maximum), each a number in the unit of the column or None; candidates outside are left out.
         ``uncertainties`` maps parameters to standard uncertainties: "3%" of the value, or a quantity;
         of a parameter in the table each candidate's own, of another one common to all. Those that
@@ -294,7 +297,7 @@ class Campaign:
         second: str,
         *,
         second_most: bool = False,
-        first: str = "inefficiency_energy_mean_percent",
+        first: str | None = None,
         first_most: bool = False,
         where: Mapping[str, tuple[float | None, float | None]] | None = None,
         condition_weights: Sequence[float] = (),
@@ -315,7 +318,7 @@ class Campaign:
 
     def effects(
         self,
-        figure: str = "inefficiency_energy_mean_percent",
+        figure: str | None = None,
         *,
         columns: Sequence[str] = (),
         where: Mapping[str, tuple[float | None, float | None]] | None = None,
@@ -1030,8 +1033,9 @@ class Client:
         table: Any,
         lubricant: str | None = None,
         *,
-        speeds_kilometres_per_hour: Sequence[Quantity] = (60,),
-        sump_temperatures_celsius: Sequence[Quantity] = (40,),
+        rig: Rig | None = None,
+        speeds_kilometres_per_hour: Sequence[Quantity] | None = None,
+        sump_temperatures_celsius: Sequence[Quantity] | None = None,
         speed_weights: Sequence[float] | None = None,
         sump_weights: Sequence[float] | None = None,
         ascent_angle_degrees: Quantity | None = None,
@@ -1050,8 +1054,8 @@ class Client:
         labels: Mapping[str, str] | None = None,
         request_id: str | None = None,
     ) -> Campaign:
-        """Screens candidates, one a row, at every speed and sump temperature, and returns the
-        campaign at once. The server computes and keeps it: up to 100,000 candidates and 20 million
+        """Screens candidates, one a row, at every speed and sump temperature (None: 60 km/h and
+        40 C), and returns the campaign at once. The server computes and keeps it: up to 100,000 candidates and 20 million
         points.
 
         ``table`` is as of points(). A column "lubricant.FIELD" or "surface.FIELD" states what
@@ -1066,6 +1070,10 @@ class Client:
         lubricants have the columns "name" and their parameters. ``labels``: campaigns() filters by
         them.
 
+        ``rig``, a tribodyn.Rig, runs the candidates on a rig in place of the axle: the columns are
+        those of rig(), ``surface`` None means smooth specimens, and gear set, vehicle, tolerance,
+        speeds and sump temperatures are left out.
+
         The same call again finds its campaign by a request id that is a hash of all that decides its
         figures, goes on if it is paused, and computes nothing twice; ``request_id`` states another
         one. A budget pauses the campaign when it is spent. Raises if a parameter or condition is
@@ -1076,6 +1084,7 @@ class Client:
                 self._client.screen(
                     table,
                     lubricant,
+                    rig=rig,
                     speeds_kilometres_per_hour=speeds_kilometres_per_hour,
                     sump_temperatures_celsius=sump_temperatures_celsius,
                     speed_weights=speed_weights,

@@ -1,6 +1,7 @@
 import { useMemo, useState } from 'preact/hooks';
 import { ApiError, change, get, session, url } from '../api/client';
 import type { AppendCandidatesRequest, Campaign, Lubricant, Surface } from '../api/types';
+import { conditionsOf } from '../campaign';
 import { characterise, parametersOf, unitsOf, type Bases, type Present } from '../candidates';
 import { inputWords } from '../comparison';
 import { Missing } from '../components/missing';
@@ -19,11 +20,11 @@ interface Known {
   present: Present;
 }
 
-const FIELDS = 'name,display_name,candidates,conditions,lubricant_revision,surface_revision,candidate_columns.path,candidate_attributes.name,candidate_attributes.texts,candidate_lubricants';
+const FIELDS = 'name,display_name,candidates,points,lubricant_revision,surface_revision,candidate_columns.path,candidate_attributes.name,candidate_attributes.texts,candidate_lubricants';
 
 async function readKnown(name: string, signal: AbortSignal): Promise<Known> {
   const campaign = await get<Campaign>(url(name, { read_mask: FIELDS }), signal);
-  const [lubricant, surface] = await Promise.all([get<Lubricant>(url(campaign.lubricant_revision!), signal), get<Surface>(url(campaign.surface_revision!), signal)]);
+  const [lubricant, surface] = await Promise.all([get<Lubricant>(url(campaign.lubricant_revision!), signal), campaign.surface_revision ? get<Surface>(url(campaign.surface_revision), signal) : ({} as Surface)]);
   return {
     campaign, bases: { lubricant, surface },
     present: {
@@ -86,7 +87,7 @@ export function AppendCandidates({ name }: { name: string }) {
       <div class="heading">
         <div>
           <h1>Add candidates to <a href={back}>{campaign.display_name || `campaign ${idOf(name)}`}</a></h1>
-          <p class="muted">It has {campaign.candidates} candidates at {campaign.conditions?.length} condition{campaign.conditions?.length === 1 ? '' : 's'}. What is computed stays as it is.</p>
+          <p class="muted">It has {campaign.candidates} candidates at {conditionsOf(campaign)} condition{conditionsOf(campaign) === 1 ? '' : 's'}. What is computed stays as it is.</p>
         </div>
         <button class="primary" disabled={!isReady || busy || session.value?.scope === 'read'}>{busy ? 'Adding …' : 'Add the candidates'}</button>
       </div>

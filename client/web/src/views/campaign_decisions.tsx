@@ -4,7 +4,7 @@ import type {
   Campaign, CandidateConstraint, CandidateObjective, EstimateCandidateEffectsResponse, FindParetoCandidatesResponse,
   ParetoCandidate, PromoteCandidateResponse, RankCandidatesResponse, RankedCandidate,
 } from '../api/types';
-import type { Column, Range, Rows } from '../campaign';
+import { usualFigure, type Column, type Range, type Rows } from '../campaign';
 import { Scatter, type Dot } from '../charts/scatter';
 import { Bars } from '../components/bars';
 import { Entry } from '../components/entry';
@@ -103,7 +103,7 @@ export function Ranking({ campaign, rows, ranges, version, chosen, onChoose }: D
   const { query } = useStore(place);
   useStore(units);
   const columns = objectiveColumns(rows);
-  const stated = statedOf(query.get('goal'), columns, 'inefficiency_energy_mean_percent');
+  const stated = statedOf(query.get('goal'), columns, usualFigure(campaign));
   const percent = Math.max(0, Number(query.get('du') ?? 0) || 0);
   const answer = useAnswer<RankCandidatesResponse>(`${campaign.name}:rank`, stated && {
     objective: stated.objective, constraints: constraintsOf(ranges), count: RANKED,
@@ -182,8 +182,8 @@ export function Pareto({ campaign, rows, ranges, version, chosen, onChoose }: De
   const { query } = useStore(place);
   const inUnits = useStore(units);
   const columns = objectiveColumns(rows);
-  const first = statedOf(query.get('goal'), columns, 'inefficiency_energy_mean_percent');
-  const usual = columns.find((each) => each.kind === 'candidate')?.name ?? columns.find((each) => each.name === 'film_ratio_minimum')?.name ?? 'dynamic_transmission_error_maximum_metres';
+  const first = statedOf(query.get('goal'), columns, usualFigure(campaign));
+  const usual = columns.find((each) => each.kind === 'candidate')?.name ?? columns.find((each) => each.name === 'film_ratio_minimum')?.name ?? (campaign.rig ? '-central_film_thickness_metres' : 'dynamic_transmission_error_maximum_metres');
   const second = statedOf(query.get('other'), columns, usual);
   const constraints = constraintsOf(ranges);
   const front = useAnswer<FindParetoCandidatesResponse>(`${campaign.name}:findPareto`, first && second && { first: first.objective, second: second.objective, constraints, beaten_count: MOST_BEATEN }, version);
@@ -234,7 +234,7 @@ export function Effects({ campaign, rows, ranges, version }: DecisionProps) {
   const { query } = useStore(place);
   useStore(units);
   const columns = rows.columns.filter((each) => each.kind === 'figure');
-  const stated = statedOf(query.get('goal')?.replace(/^-/, '') ?? null, columns, 'inefficiency_energy_mean_percent');
+  const stated = statedOf(query.get('goal')?.replace(/^-/, '') ?? null, columns, usualFigure(campaign));
   const answer = useAnswer<EstimateCandidateEffectsResponse>(`${campaign.name}:estimateEffects`, stated && {
     figure: stated.objective.figure, constraints: constraintsOf(ranges),
   }, version);

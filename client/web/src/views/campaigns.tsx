@@ -2,7 +2,7 @@ import { useEffect, useMemo, useState } from 'preact/hooks';
 import { change, get, session, url } from '../api/client';
 import { watchCampaign, type Stream } from '../api/events';
 import type { Campaign, CampaignEvent, ListCampaignsResponse } from '../api/types';
-import { extentOf, isWithin, MOST_CANDIDATES, MOST_ROWS, orderedRows, rangesOf, rangesText, readRows, varies, type Column, type Range, type Rows } from '../campaign';
+import { conditionsOf, extentOf, isWithin, MOST_CANDIDATES, MOST_ROWS, orderedRows, rangesOf, rangesText, readRows, rigConditions, usualFigure, varies, type Column, type Range, type Rows } from '../campaign';
 import { Parallel, type Axis } from '../charts/parallel';
 import { Scatter, type Dot } from '../charts/scatter';
 import { MARKERS } from '../charts/spec';
@@ -33,9 +33,9 @@ const MOST_AXES = 8;
 const ENDED = ['SUCCEEDED', 'FAILED', 'CANCELLED'];
 
 /** What lists show of a campaign. */
-const LISTED = 'name,display_name,state,stop,lubricant,candidates,conditions,points,points_done,points_refused,labels,create_time';
+const LISTED = 'name,display_name,state,stop,lubricant,candidates,rig,points,points_done,points_refused,labels,create_time';
 /** What the page of a campaign shows; values of its candidates come with its rows. */
-const SHOWN = `${LISTED},refusals,lubricant_revision,gear_set_revision,surface_revision,vehicle_revision`;
+const SHOWN = `${LISTED},conditions,refusals,lubricant_revision,gear_set_revision,surface_revision,vehicle_revision`;
 const SHOWN_OF_CANDIDATES = `${SHOWN},candidate_columns.path,candidate_attributes.name,candidate_attributes.texts`;
 
 export function Campaigns() {
@@ -153,7 +153,7 @@ function CampaignList() {
                   <td><a href={address(`/campaigns/${idOf(each.name)}`)}>{each.display_name || `Campaign ${idOf(each.name)}`}</a><small>{idOf(each.name)}</small><Labels campaign={each} /></td>
                   <td>{shortTitle(titles.get(idOf(each.lubricant)) ?? idOf(each.lubricant))}</td>
                   <td class="number">{each.candidates}</td>
-                  <td class="number">{each.conditions?.length}</td>
+                  <td class="number">{conditionsOf(each)}{each.rig && <small>of a rig</small>}</td>
                   <td><State campaign={each} />{each.stop && <small class={each.state === 'FAILED' ? 'problem' : ''}>{each.stop.message}</small>}</td>
                   <td class="number">{each.points_refused ?? 0}</td>
                   <td class="number">{ago(each.create_time)}</td>
@@ -216,8 +216,9 @@ function CampaignPage({ name }: { name: string }) {
         <div>
           <h1>{campaign.display_name || `Campaign ${idOf(name)}`}</h1>
           <p class="muted">
-            {campaign.candidates} candidates like {revisionIdOf(campaign.lubricant_revision)} at {campaign.conditions?.length} condition{campaign.conditions?.length === 1 ? '' : 's'};{' '}
-            {revisionIdOf(campaign.gear_set_revision)}, {revisionIdOf(campaign.surface_revision)}, {revisionIdOf(campaign.vehicle_revision)}
+            {campaign.candidates} candidates like {revisionIdOf(campaign.lubricant_revision)} at {conditionsOf(campaign)} condition{conditionsOf(campaign) === 1 ? '' : 's'};{' '}
+            {campaign.rig ? `rig, ${campaign.surface_revision ? revisionIdOf(campaign.surface_revision) : 'smooth specimens'}`
+              : `${revisionIdOf(campaign.gear_set_revision)}, ${revisionIdOf(campaign.surface_revision)}, ${revisionIdOf(campaign.vehicle_revision)}`}
           </p>
           <Labels campaign={campaign} />
         </div>
@@ -259,7 +260,8 @@ function Results({ campaign, rows, version }: { campaign: Campaign; rows: Rows; 
   useStore(units);
   const view = query.get('view') ?? 'rank';
   const isDecision = ['rank', 'pareto', 'effects'].includes(view);
-  const conditions = campaign.conditions ?? [];
+  const conditions = campaign.rig ? rigConditions(campaign, rows) : (campaign.conditions ?? []).map((each) =>
+    `${each.speed_kilometres_per_hour} km/h, ${sumpText(each.sump_temperature_celsius)}${each.ascent_angle_degrees ? `, ${each.ascent_angle_degrees}° uphill` : ''}`);
   const condition = conditions.length < 2 || query.get('at') === 'all' ? null : Math.min(conditions.length - 1, Number(query.get('at') ?? 0));
   const ranges = useMemo(() => rangesOf(query.get('b')), [query.get('b')]);
   const setRange = (column: string, ends: [number, number] | null) =>
@@ -273,7 +275,7 @@ function Results({ campaign, rows, version }: { campaign: Campaign; rows: Rows; 
   const chosenRow = chosen === null ? null : all.find((row) => rows.candidates[row] === chosen) ?? null;
   const choose = (row: number | null) => set({ c: row === null ? undefined : String(rows.candidates[row]) });
   const decision = { campaign, rows, ranges, version, chosen, onChoose: (candidate: number | null) => set({ c: candidate === null ? undefined : String(candidate) }) };
-  const shownColumns = useMemo(() => rows.columns.filter((each) => varies(each, all) || each.name === 'inefficiency_energy_mean_percent'), [rows, all]);
+  const shownColumns = useMemo(() => rows.columns.filter((each) => varies(each, all) || each.name === usualFigure(campaign)), [rows, all]);
   return (
     <>
       <div class="tabs" role="group" aria-label="View">
@@ -283,7 +285,7 @@ function Results({ campaign, rows, version }: { campaign: Campaign; rows: Rows; 
         {conditions.length > 1 && !isDecision && (
           <label class="inline">Condition
             <select value={condition === null ? 'all' : String(condition)} onChange={(event) => set({ at: event.currentTarget.value === '0' ? undefined : event.currentTarget.value })}>
-              {conditions.map((each, k) => <option key={k} value={k}>{each.speed_kilometres_per_hour} km/h, {sumpText(each.sump_temperature_celsius)}{each.ascent_angle_degrees ? `, ${each.ascent_angle_degrees}° uphill` : ''}</option>)}
+              {conditions.map((each, k) => <option key={k} value={k}>{each}</option>)}
               <option value="all">all of them</option>
             </select>
           </label>
@@ -373,7 +375,7 @@ function Plot({ rows, columns, all, within, chosen, onChoose }: {
   const inUnits = useStore(units);
   const find = (name: string | null, otherwise: Column | undefined) => columns.find((each) => each.name === name) ?? otherwise;
   const x = find(query.get('x'), columns.find((each) => each.kind === 'candidate') ?? columns[0]);
-  const y = find(query.get('y'), columns.find((each) => each.name === 'inefficiency_energy_mean_percent') ?? columns.at(-1));
+  const y = find(query.get('y'), columns.find((each) => ['inefficiency_energy_mean_percent', 'traction_coefficient'].includes(each.name)) ?? columns.at(-1));
   // Words of candidates give the colors if there are as many colors.
   const words = rows.texts.find((each) => each.name === query.get('color'));
   const kinds = useMemo(() => [...new Set(words?.values ?? [])].sort(), [words]);
@@ -410,7 +412,8 @@ function Plot({ rows, columns, all, within, chosen, onChoose }: {
 
 /** Columns whose spread a reader screens by: what candidates differ in, and the main figures. */
 const isUsual = (column: Column): boolean =>
-  column.kind === 'candidate' || ['inefficiency_energy_mean_percent', 'mesh_loss_power_watts', 'dynamic_transmission_error_maximum_metres', 'film_ratio_minimum', 'contact_temperature_maximum_kelvin'].includes(column.name);
+  column.kind === 'candidate' || ['inefficiency_energy_mean_percent', 'mesh_loss_power_watts', 'dynamic_transmission_error_maximum_metres', 'film_ratio_minimum', 'contact_temperature_maximum_kelvin',
+    'traction_coefficient', 'central_film_thickness_metres', 'contact_temperature_kelvin'].includes(column.name);
 
 function Coordinates({ columns, all, within, ranges, chosen, onRange }: {
   columns: Column[]; all: number[]; within: (row: number) => boolean; ranges: Range[]; chosen: number | null;

@@ -2,6 +2,7 @@ import { Fragment } from 'preact';
 import { useMemo, useState } from 'preact/hooks';
 import type { ApiError, Violation } from '../api/client';
 import type { Campaign, Constraint } from '../api/types';
+import { conditionsOf } from '../campaign';
 import { candidatesOf, problemOf, roleOf, tableOf, unitOfHeader, unitsOf, type Bases, type Candidates, type Present, type Problem, type Role, type Table, type TableColumn } from '../candidates';
 import { inputWords } from '../comparison';
 import { Num } from '../components/num';
@@ -120,7 +121,7 @@ export function Estimate({ answer, ofNew = false }: { answer: Campaign; ofNew?: 
   const unit = timeUnit(seconds);
   return (
     <>
-      <strong><span data-value={answer.candidates}>{answer.candidates}</span></strong> candidates at {answer.conditions!.length} condition{answer.conditions!.length === 1 ? '' : 's'} are{' '}
+      <strong><span data-value={answer.candidates}>{answer.candidates}</span></strong> candidates at {conditionsOf(answer)} condition{conditionsOf(answer) === 1 ? '' : 's'} are{' '}
       <strong><span data-value={answer.points}>{answer.points}</span></strong> points; {ofNew ? 'the new ones' : 'they'} take about <strong><Num value={seconds} unit={unit} error={0.2 * seconds} /> {unit.symbol}</strong> of one processor.
     </>
   );
