@@ -1213,7 +1213,6 @@ void measure_large_campaign(std::vector<Measurement>& out) {
 void measure_campaigns(std::vector<Measurement>& out) {
   measure_campaign_cost(1, out);
   measure_campaign_cost(2, out);
-  measure_rig_campaign(out);
   measure_campaign_threads(out);
   measure_interactive_beside_a_campaign(out);
   measure_large_campaign(out);
@@ -1276,17 +1275,19 @@ void measure_estimates(std::vector<Measurement>& out) {
 int main(int argc, char** argv) {
   using namespace tribodyn::server;
   using Measure = void (*)(std::vector<tribodyn::Measurement>&);
-  const std::vector<std::pair<std::string, Measure>> parts = {{"requests", measure_requests},
-                                                              {"lists", measure_lists},
-                                                              {"histories", measure_histories},
-                                                              {"watchers", measure_watchers},
-                                                              {"overload", measure_overload},
-                                                              {"refusals", measure_refusals},
-                                                              {"interactive", measure_interactive},
-                                                              {"screening", measure_screening},
-                                                              {"bands", measure_bands},
-                                                              {"campaigns", measure_campaigns},
-                                                              {"estimates", measure_estimates}};
+  const std::vector<std::pair<std::string, Measure>> parts = {
+      {"requests", measure_requests},
+      {"lists", measure_lists},
+      {"histories", measure_histories},
+      {"watchers", measure_watchers},
+      {"overload", measure_overload},
+      {"refusals", measure_refusals},
+      {"interactive", measure_interactive},
+      {"screening", measure_screening},
+      {"bands", measure_bands},
+      {"campaigns", measure_campaigns},
+      {"rig_campaigns", measure_rig_campaign},
+      {"estimates", measure_estimates}};
   const std::string path = argc > 1 ? argv[1] : "build/benchmark/results.json";
   const std::vector<std::string> wanted(argv + std::min(argc, 2), argv + argc);
   for (const auto& [name, measure] : parts) {
