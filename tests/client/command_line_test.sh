@@ -384,7 +384,7 @@ done
 explain=$(grep -oE 'explain 75W-[0-9a-z-]+@1 80W-90@1 .*' "$folder/out")
 # shellcheck disable=SC2086
 expect 0 $explain --draws 19
-out_has '^  80W-90@1 loses more than 75W-'
+out_has '^  80W-90@1 loses [0-9.]+ percentage points more than 75W-'
 out_has '^difference +[0-9.]+ .* 100 '
 printf 'name,kv40\n75W-90 new,100\n' >"$folder/blank.csv"
 expect 1 lubricants import "$folder/blank.csv"
