@@ -1,4 +1,4 @@
-import { useMemo } from 'preact/hooks';
+import { useMemo, useState } from 'preact/hooks';
 import { fluidsOf, shortTitle, speedUnitOf, variantOf, type Curve } from '../curve';
 import { idOf, revisionIdOf, rounded } from '../format';
 import { Store, useStore } from '../store';
@@ -39,6 +39,49 @@ function greatestAt(curves: Curve[], column: string): number | null {
   return best;
 }
 
+const SHOWN_SPEEDS = 100;
+
+interface LineOfCurve {
+  curve: Curve;
+  series: number;
+  label: string;
+  rows: Map<number | null, number>; // by speed
+}
+
+/** The plotted numbers at all speeds. */
+function EverySpeed({ lines, speeds, quantity, groups }: { lines: LineOfCurve[]; speeds: number[]; quantity: Quantity; groups: ComparedGroup[] | undefined }) {
+  const [isOpen, setOpen] = useState(false);
+  const [count, setCount] = useState(SHOWN_SPEEDS);
+  const kinds = ['least', 'greatest'];
+  return (
+    <details onToggle={(event) => setOpen(event.currentTarget.open)}>
+      <summary data-key="t">Every speed: {quantity.label.toLowerCase()}{quantity.unit.symbol && `, ${quantity.unit.symbol}`}</summary>
+      {isOpen && (
+        <div class="scroll" tabIndex={0} role="region" aria-label="Every speed">
+          <table>
+            <thead>
+              <tr><th class="number">km/h</th>{lines.map(({ curve, series, label }) => quantity.columns.map((column, k) => (
+                <th key={`${curve.simulation.name} ${column}`} class="number"><Swatch series={series} /> {label}{quantity.columns.length > 1 && <small>{kinds[k]}</small>}</th>
+              )))}</tr>
+            </thead>
+            <tbody>
+              {speeds.slice(0, count).map((speed) => (
+                <tr key={speed}>
+                  <th scope="row" class="number">{speed}</th>
+                  {lines.map(({ curve, rows }) => quantity.columns.map((column) => (
+                    <td key={`${curve.simulation.name} ${column}`} class="number">{rows.has(speed) ? <CurveNum curve={curve} row={rows.get(speed)!} quantity={quantity} column={column} groups={groups} /> : '–'}</td>
+                  )))}
+                </tr>
+              ))}
+            </tbody>
+          </table>
+          {speeds.length > count && <button onClick={() => setCount(count + SHOWN_SPEEDS)}>Show {Math.min(SHOWN_SPEEDS, speeds.length - count)} more of {speeds.length} speeds</button>}
+        </div>
+      )}
+    </details>
+  );
+}
+
 /** Every number of the plots at one speed. */
 export function ReadOut({ curves, titles, groups, speed, shownQuantity, onOpen }: ReadOutProps) {
   const chosen = useStore(speed);
@@ -63,6 +106,7 @@ export function ReadOut({ curves, titles, groups, speed, shownQuantity, onOpen }
   const index = speeds.indexOf(at);
   const columns = QUANTITIES.flatMap((quantity) => quantity.columns.map((column, k) => ({ quantity, column, k })));
   const torque = finite(curves[0]!.columns['pinion_torque_newton_metres']![lines[0]!.rows.get(at) ?? -1]);
+  const every = useMemo(() => <EverySpeed lines={lines} speeds={speeds} quantity={shownQuantity} groups={groups} />, [lines, speeds, shownQuantity, groups]);
   const errors = lines.map(({ curve, rows }) => curve.columns['estimated_relative_error']![rows.get(at) ?? -1]);
   return (
     <section class="read-out" aria-labelledby="read-out-title">
@@ -103,6 +147,7 @@ export function ReadOut({ curves, titles, groups, speed, shownQuantity, onOpen }
         </table>
       </div>
       <p class="muted small">{errorText(errors)}</p>
+      {every}
     </section>
   );
 }

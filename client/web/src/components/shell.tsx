@@ -6,6 +6,7 @@ import { address, follow, go, place } from '../router';
 import { useStore } from '../store';
 import { units } from '../units';
 import { Home } from '../views/home';
+import { Keys } from './keys';
 import { Missing } from './missing';
 import { Notice } from './notice';
 import { SignIn } from './sign_in';
@@ -114,6 +115,7 @@ export function Shell() {
           : View === 'loading' ? <p class="muted">Loading …</p>
           : hasBegun ? <View /> : null}
       </main>
+      <Keys />
       {who === null && <SignIn />}
     </div>
   );

@@ -388,7 +388,7 @@ function SpeedTable({ lines, names, speeds, pinion }: { lines: ComparedLubricant
   };
   return (
     <details>
-      <summary>Every speed</summary>
+      <summary data-key="t">Every speed</summary>
       <div class="scroll" tabIndex={0} role="region" aria-label="Every speed">
         <table>
           <thead>

@@ -198,7 +198,7 @@ export function Curves() {
       <aside class="panel" aria-label="Conditions">
         <Conditions request={request} onChange={setRequest} lubricants={lubricants.value ?? []} gearSets={gearSets.value ?? []}
           violations={refusal instanceof ApiError ? refusal.violations : []} shown={done} />
-        <button class="primary wide" disabled={busy || request.fluids.length === 0 || session.value?.scope === 'read'} onClick={() => void submit(bodiesOf(request))}>
+        <button class="primary wide" data-key="r" disabled={busy || request.fluids.length === 0 || session.value?.scope === 'read'} onClick={() => void submit(bodiesOf(request))}>
           {busy ? 'Submitting …' : request.fluids.length * request.sumps.length > 1 ? `Run ${request.fluids.length * request.sumps.length} curves` : 'Run the curve'}
         </button>
         <a class="small" href={address('/curves', queryOf(request))}>Link to this form</a>
