@@ -123,6 +123,14 @@ void SolvedContacts::resize(std::size_t count) {
   size_ = count;
 }
 
+void SolvedContacts::resize_for_overwrite(std::size_t count) {
+  if (count <= size_) return;
+  rows_.resize_for_overwrite(kFilmLoadRow + 1, count);
+  limiting_stress_at_centre_ = std::make_unique_for_overwrite<bool[]>(count);
+  by_reference_ = std::make_unique_for_overwrite<bool[]>(count);
+  size_ = count;
+}
+
 FlankContactBatchResults SolvedContacts::results() {
   FlankContactBatchResults out;
   for (std::size_t r = 0; r < std::size(kSolvedRows); ++r) out.*kSolvedRows[r].array = rows_[r];
@@ -222,7 +230,8 @@ int OrbitFriction::gather(const MeshGrid& grid, const std::vector<OrbitPiece>& p
 }
 
 bool OrbitFriction::solve_contacts(const ContactGeometries& geometries, int count) {
-  solved_->resize(count);
+  // Without contacts that are solved their figures are 0.
+  coefficient_ ? solved_->resize(count) : solved_->resize_for_overwrite(count);
   FlankContactBatchResults results = solved_->results();
   if (coefficient_) {
     for (int i = 0; i < count; ++i) results.friction[i] = *coefficient_ * seen_[kSeenLoad][i];

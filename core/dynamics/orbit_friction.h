@@ -40,8 +40,10 @@ const std::array<FlankKinematics, kFlankPairs>& flanks_of(
 /// Figures of the contacts of a response, in the order of its instants and of their flank pairs.
 class SolvedContacts {
  public:
-  /// Nothing is kept.
+  /// Nothing is kept: all figures are 0 at first.
   void resize(std::size_t count);
+  /// Nothing is kept: figures mean nothing before a batch puts them there.
+  void resize_for_overwrite(std::size_t count);
   /// Where a batch puts them, all but the status.
   FlankContactBatchResults results();
   const double* friction() const { return rows_[0]; }
