@@ -91,7 +91,7 @@ struct CampaignJobs::Part {
   int number = 0;
   bool is_queued = false;                // guarded by Running::mutex; waits or runs
   std::shared_ptr<StopSignal> stop;      // guarded by Running::mutex; of the present slice
-  std::function<bool()> goes_on;         ///< of the present slice
+  std::function<bool()> goes_on;         ///< of the present slice; null without one
   std::function<double()> used_seconds;  ///< by the present slice, without other jobs
   std::optional<Tile> tile;
   std::shared_ptr<const CampaignInputs> inputs;  ///< with which the tile was taken
@@ -461,6 +461,7 @@ void CampaignJobs::run_slice(const Lease& lease, PreparedGearSets& gear_sets,
     spdlog::error("{}: {}", running->name, error.what());
     goes_on = lease.stop->wait_for(kStorePause);
   }
+  part.goes_on = nullptr;
   scheduler_.return_slice(lease, part.used_seconds(), goes_on);
   {
     const std::lock_guard lock(running->mutex);
@@ -663,7 +664,10 @@ void CampaignJobs::write(Running& running, Part& part) {
     }
     rows.columns.swap(tile.columns);
     try {
-      stored = store_.add_tile(running.id, rows, clock_());
+      // Compressing takes 10 ms, for which an urgent job of the same thread need not wait.
+      stored = store_.add_tile(running.id, rows, clock_(), [&part] {
+        if (part.goes_on) part.goes_on();
+      });
     } catch (...) {
       rows.columns.swap(tile.columns);
       throw;

@@ -525,10 +525,14 @@ void end_suspects(Connection& db, std::int64_t id) {
   end.exec();
 }
 
-std::vector<std::string> compress_tile(const NewTile& tile) {
+std::vector<std::string> compress_tile(const NewTile& tile,
+                                       const std::function<void()>& between_columns) {
   std::vector<std::string> out;
   out.reserve(tile.columns.size());
-  for (const std::vector<double>& each : tile.columns) out.push_back(compress_column(each));
+  for (const std::vector<double>& each : tile.columns) {
+    if (between_columns) between_columns();
+    out.push_back(compress_column(each));
+  }
   return out;
 }
 

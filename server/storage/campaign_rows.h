@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -89,8 +90,9 @@ void begin_suspect(Connection& db, std::int64_t id, const RowRange& rows);
 /// Notes that no process computes suspects of the campaign.
 void end_suspects(Connection& db, std::int64_t id);
 
-/// Blobs of a tile: one for each column.
-std::vector<std::string> compress_tile(const NewTile& tile);
+/// Blobs of a tile: one for each column. Calls `between_columns`, if there is one, before each.
+std::vector<std::string> compress_tile(const NewTile& tile,
+                                       const std::function<void()>& between_columns);
 /// Adds a tile, and changes the campaign to SUCCEEDED if no row is missing, or to PAUSED with
 /// BUDGET_SPENT if its budget is. Returns the campaign; nullopt, and changes nothing, if the
 /// campaign does not exist or has ended, or holds one of the rows.

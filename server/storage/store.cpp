@@ -708,9 +708,10 @@ void Store::end_suspects(std::int64_t id) {
 }
 
 std::optional<StoredCampaign> Store::add_tile(std::int64_t id, const NewTile& tile,
-                                              Microseconds now) {
+                                              Microseconds now,
+                                              const std::function<void()>& between_columns) {
   // Compresses before the transaction, so that other writers do not wait.
-  const std::vector<std::string> blobs = compress_tile(tile);
+  const std::vector<std::string> blobs = compress_tile(tile, between_columns);
   std::optional<StoredCampaign> out;
   write_together({}, [&](Connection& db) { out = insert_tile(db, id, tile, blobs, now); });
   tell_campaign_change();

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -240,7 +241,9 @@ class Store {
   std::vector<CampaignSuspect> campaign_suspects(std::int64_t id);
   void begin_suspect(std::int64_t id, const RowRange& rows);
   void end_suspects(std::int64_t id);
-  std::optional<StoredCampaign> add_tile(std::int64_t id, const NewTile& tile, Microseconds now);
+  /// `between_columns` is called while nothing is locked, several times if the tile is large.
+  std::optional<StoredCampaign> add_tile(std::int64_t id, const NewTile& tile, Microseconds now,
+                                         const std::function<void()>& between_columns = {});
   std::optional<CampaignProgress> campaign_progress(std::int64_t id, std::int64_t first_missing_row,
                                                     const CallLimits& limits = {});
   /// Returns a number that grows with each change of a campaign that this process made by one of
