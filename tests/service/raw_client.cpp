@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdint>
 
@@ -134,16 +135,39 @@ SilentConnections::~SilentConnections() {
 
 namespace {
 
-/// Returns an HTTP/2 frame on stream 0 or 1.
-std::string frame(char type, char flags, char stream, const std::string& body) {
-  const auto byte = [&](int shift) { return static_cast<char>(body.size() >> shift); };
-  return std::string{byte(16), byte(8), byte(0), type, flags, 0, 0, 0, stream} + body;
+constexpr char kData = 0;
+constexpr char kHeaders = 1;
+constexpr char kSettings = 4;
+constexpr char kPing = 6;
+constexpr char kWindowUpdate = 8;
+constexpr char kEndOfHeaders = 4;  // flag of headers
+constexpr char kAcknowledged = 1;  // flag of settings and pings
+
+/// Returns an HTTP/2 frame.
+std::string frame(char type, char flags, int stream, const std::string& body) {
+  const auto byte = [](std::size_t value, int shift) { return static_cast<char>(value >> shift); };
+  const auto id = static_cast<std::size_t>(stream);
+  return std::string{
+             byte(body.size(), 16), byte(body.size(), 8), byte(body.size(), 0), type,       flags,
+             byte(id, 24),          byte(id, 16),         byte(id, 8),          byte(id, 0)} +
+         body;
 }
+
+/// Returns what begins a connection.
+std::string preface() { return "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + frame(kSettings, 0, 0, ""); }
 
 /// Returns an uncompressed header field.
 std::string header(const std::string& name, const std::string& value) {
   return std::string(1, '\0') + static_cast<char>(name.size()) + name +
          static_cast<char>(value.size()) + value;
+}
+
+/// Returns the headers of a call.
+std::string headers(int stream, const std::string& method) {
+  return frame(kHeaders, kEndOfHeaders, stream,
+               header(":method", "POST") + header(":scheme", "http") + header(":path", method) +
+                   header(":authority", "x") + header("te", "trailers") +
+                   header("content-type", "application/grpc"));
 }
 
 /// Reads a frame from the server; returns false after the time limit of the socket.
@@ -171,13 +195,6 @@ std::int64_t number_at(const std::string& bytes, std::size_t offset) {
 
 HalfSentCall::HalfSentCall(int port, const std::string& method, std::size_t size)
     : descriptor_(open_connection(port)) {
-  constexpr char kData = 0;
-  constexpr char kHeaders = 1;
-  constexpr char kSettings = 4;
-  constexpr char kPing = 6;
-  constexpr char kWindowUpdate = 8;
-  constexpr char kEndOfHeaders = 4;
-  constexpr char kAcknowledged = 1;
   constexpr std::int64_t kInitialWindow = 65'535;
   constexpr std::int64_t kLargestFrame = 16'384;
   const timeval limit{.tv_sec = 1, .tv_usec = 0};
@@ -189,11 +206,7 @@ HalfSentCall::HalfSentCall(int port, const std::string& method, std::size_t size
   std::string message(5 + size - 1, '\x3a');  // uncompressed flag and length
   message[0] = 0;
   for (int i = 0; i < 4; ++i) message[1 + i] = static_cast<char>(size >> (24 - 8 * i));
-  put("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + frame(kSettings, 0, 0, "") +
-      frame(kHeaders, kEndOfHeaders, 1,
-            header(":method", "POST") + header(":scheme", "http") + header(":path", method) +
-                header(":authority", "x") + header("te", "trailers") +
-                header("content-type", "application/grpc")));
+  put(preface() + headers(1, method));
   std::int64_t of_connection = kInitialWindow;
   std::int64_t of_stream = kInitialWindow;
   std::int64_t initial = kInitialWindow;
@@ -228,6 +241,27 @@ HalfSentCall::HalfSentCall(int port, const std::string& method, std::size_t size
 }
 
 HalfSentCall::~HalfSentCall() { close(descriptor_); }
+
+HeadersOfCalls::HeadersOfCalls(int port, const std::string& method, int count)
+    : descriptor_(open_connection(port)) {
+  std::string bytes = preface();
+  for (int i = 0; i < count; ++i) bytes += headers(1 + 2 * i, method);
+  for (std::size_t sent = 0; sent < bytes.size();) {
+    const ssize_t now = send(descriptor_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+    if (now <= 0) return;
+    sent += static_cast<std::size_t>(now);
+  }
+}
+
+HeadersOfCalls::~HeadersOfCalls() { close(descriptor_); }
+
+bool HeadersOfCalls::is_closed() const {
+  char bytes[4096];
+  for (;;) {
+    const ssize_t count = recv(descriptor_, bytes, sizeof(bytes), MSG_DONTWAIT);
+    if (count <= 0) return count == 0 || errno == ECONNRESET;
+  }
+}
 
 void send_raw_bytes(int port, const std::string& bytes) {
   const int descriptor = open_connection(port);

@@ -58,6 +58,22 @@ class HalfSentCall {
   int descriptor_;
 };
 
+/// Calls on a connection of their own, of which only the headers are sent. The client acknowledges
+/// none of the server's limits. The calls are open while the object exists.
+class HeadersOfCalls {
+ public:
+  HeadersOfCalls(int port, const std::string& method, int count);
+  ~HeadersOfCalls();
+  HeadersOfCalls(const HeadersOfCalls&) = delete;
+  HeadersOfCalls& operator=(const HeadersOfCalls&) = delete;
+
+  /// Returns true if the server has closed the connection.
+  bool is_closed() const;
+
+ private:
+  int descriptor_;
+};
+
 /// Connects to a local port, sends bytes that are not HTTP/2, and disconnects.
 void send_raw_bytes(int port, const std::string& bytes);
 

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <memory>
 #include <regex>
@@ -135,6 +137,35 @@ TEST_F(Transport, HalfSentRequestsShareAMemoryLimitAndBlockNobody) {
   const auto channel = connect(address_);
   EXPECT_TRUE(
       RawClient(channel).call("/tribodyn.v1.LubricantService/ListLubricants", "").first.ok());
+}
+
+constexpr char kListLubricants[] = "/tribodyn.v1.LubricantService/ListLubricants";
+
+TEST_F(Transport, AConnectionWithTooManyUnfinishedCallsIsClosedAndOthersStay) {
+  const HeadersOfCalls few(port(), kListLubricants, 1000);
+  const HeadersOfCalls many(port(), kListLubricants, 2500);
+  const HeadersOfCalls health(port(), "/grpc.health.v1.Health/Check", 2500);
+  const auto channel = connect(address_);
+  EXPECT_TRUE(eventually([&] { return many.is_closed() && health.is_closed(); }));
+  EXPECT_FALSE(few.is_closed());
+  EXPECT_TRUE(RawClient(channel).call(kListLubricants, "").first.ok());
+  EXPECT_THAT(process_->log(), HasSubstr("cause=\"too many open calls\""));
+}
+
+TEST_F(Transport, UnfinishedCallsOnManyConnectionsAreBounded) {
+  constexpr int kConnections = 24, kCalls = 1000;
+  std::vector<std::unique_ptr<HeadersOfCalls>> all;
+  for (int i = 0; i < kConnections; ++i) {
+    all.push_back(std::make_unique<HeadersOfCalls>(port(), kListLubricants, kCalls));
+  }
+  const auto closed = [&all] {
+    return std::count_if(all.begin(), all.end(),
+                         [](const auto& each) { return each->is_closed(); });
+  };
+  EXPECT_TRUE(eventually([&] { return closed() >= 4; })) << closed();
+  std::this_thread::sleep_for(std::chrono::seconds(2));
+  EXPECT_LE(closed(), 6) << "20000 calls may be open";
+  EXPECT_TRUE(RawClient(connect(address_)).call(kListLubricants, "").first.ok());
 }
 
 TEST_F(Transport, AHalfSentRequestDoesNotDelayAShutdown) {

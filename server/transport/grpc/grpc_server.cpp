@@ -24,6 +24,12 @@ using ExternalConnections = grpc::experimental::ExternalConnectionAcceptor;
 constexpr std::size_t kGrpcBytes = 2 * kMaximumRequestBytes + (32 << 20);
 constexpr int kMaximumStreamsPerConnection = 1000;
 constexpr std::size_t kMaximumOpenStreams = 10'000;
+/// Calls on a connection beyond which it is closed: twice as many as a client may open that obeys
+/// the limit above, whose calls end some time before gRPC counts them as ended.
+constexpr long kMaximumCallsPerConnection = 2 * kMaximumStreamsPerConnection;
+/// Calls on all connections, those included whose requests have not arrived: twice as many as
+/// streams may be open. gRPC keeps about 12 kB for each.
+constexpr long kMaximumOpenCalls = 20'000;
 constexpr int kMaximumReflectionThreads = 16;   // only reflection uses blocking threads
 constexpr int kHandshakeMilliseconds = 10'000;  // then a silent connection is closed
 constexpr int kIdleMilliseconds = 600'000;      // then a connection without calls is closed
@@ -88,6 +94,7 @@ GrpcServer::GrpcServer(CallDispatcher& dispatcher, const std::vector<ListenAddre
   builder.RegisterCallbackGenericService(&unknown_methods_);
   server_ = builder.BuildAndStart();
   if (!server_) throw ListenError("gRPC cannot start");
+  open_calls_.emplace(OpenCallWatch::Limits{kMaximumCallsPerConnection, kMaximumOpenCalls});
   set_serving(false);
   for (Acceptor& each : acceptors_) {
     each.start(
@@ -117,6 +124,7 @@ void GrpcServer::shutdown() {
   if (!server_) return;
   for (Acceptor& each : acceptors_) each.stop();
   set_serving(false);
+  open_calls_.reset();
   live_.close_all();
   server_->Shutdown(std::chrono::system_clock::now() + kShutdownGrace);
   server_->Wait();

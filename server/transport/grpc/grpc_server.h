@@ -5,11 +5,13 @@
 #include <atomic>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "server/application/call_dispatcher.h"
 #include "server/transport/acceptor.h"
+#include "server/transport/grpc/open_call_watch.h"
 #include "server/transport/grpc/services.h"
 #include "server/transport/grpc/unknown_methods.h"
 #include "server/transport/listen_address.h"
@@ -47,6 +49,7 @@ class GrpcServer {
   std::vector<std::unique_ptr<grpc::Service>> services_;
   UnknownMethods unknown_methods_;
   std::unique_ptr<grpc::Server> server_;
+  std::optional<OpenCallWatch> open_calls_;
 };
 
 }  // namespace tribodyn::server
