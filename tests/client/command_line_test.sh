@@ -330,6 +330,18 @@ expect 0 lubricants create sheet-b --kv40 100 --kv100 14.9 --density15 866 --bas
 expect 0 point --lubricant sheet-a --speed 60
 out_has 'inefficiency, energy mean: [0-9.]+ % \+/- 0\.[0-9]+ \(inputs\) \+/- 0\.0[0-9]+ \(solver\)'
 out_has 'measure first: pressure viscosity$|measure first: pressure viscosity coefficient'
+expect 0 traction sheet-a --draws 49 --plot "$folder/bands.svg"
+out_has '\+/-'
+out_has 'from 49 draws'
+out_has 'Taken as exact, because no uncertainty is stated, of sheet-a@1: '
+grep -q 'Bands: 95 % intervals' "$folder/bands.svg" || fail "traction draws no bands"
+expect 0 film sheet-a --output csv
+out_has ',central_film_thickness_metres_standard_uncertainty,'
+expect 0 stribeck sheet-a --draws 0 --output json
+out_is_json
+out_lacks 'interval'
+expect 1 traction sheet-a --draws 5
+err_has '--draws.*19'
 expect 0 compare sheet-a sheet-b --speed 40,60
 out_has '^sheet-b@1 against sheet-a@1'
 out_has 'these two cannot be told apart'

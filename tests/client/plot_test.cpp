@@ -133,6 +133,24 @@ TEST(RigPlot, DrawsLinesDashedWhereIsothermalAndMeasuredPointsHollow) {
   EXPECT_NE(svg.find("<circle"), std::string::npos);
 }
 
+TEST(RigPlot, DrawsBandsOfTheFigureThatItShowsAlone) {
+  std::vector<RigRow> rows{rig_row(0.01, 0.1, false), rig_row(1, 0.05, false)};
+  const std::string without = rig_plot(rows, kStribeck, "model-x");
+  for (RigRow& row : rows) row.bands["film_ratio"] = {0.1, 0.01, 0.9};
+  EXPECT_EQ(rig_plot(rows, kStribeck, "model-x"), without);
+  for (RigRow& row : rows) row.bands["traction_coefficient"] = {0.01, 0.03, 0.12};
+  const std::string svg = rig_plot(rows, kStribeck, "model-x");
+  keep("rig_bands.svg", svg);
+  EXPECT_TRUE(is_well_formed(svg));
+  EXPECT_NE(svg.find("Bands: 95 % intervals"), std::string::npos);
+  const auto paths = [](const std::string& text) {
+    std::size_t out = 0;
+    for (std::size_t at = 0; (at = text.find("<path", at)) != std::string::npos; ++at) ++out;
+    return out;
+  };
+  EXPECT_EQ(paths(svg), paths(without) + 1);
+}
+
 TEST(MapPlot, DrawsACellAtEachFigureAndContourLinesThroughExactPlaces) {
   MapPicture picture;
   picture.title = "Map";
@@ -205,6 +223,29 @@ TEST(RigText, StatesResidualsOfMeasuredPointsAndRefusals) {
   const std::string table = rig_text(rows, kStribeck, OutputFormat::kTable);
   EXPECT_NE(table.find("x@1: RMS residual 10 % of 1 measured points"), std::string::npos) << table;
   EXPECT_NE(table.find("refused: too cold"), std::string::npos);
+}
+
+TEST(RigText, StatesUncertaintiesAndWhatCountsAsExact) {
+  std::vector<RigRow> rows{rig_row(0.01, 0.11, false), rig_row(1, 0.05, false)};
+  rows[0].bands["traction_coefficient"] = {0.0123, 0.09, 0.14};
+  rows[1].bands["traction_coefficient"] = {std::nan(""), std::nan(""), std::nan("")};
+  rows[1].refused_draws = 12;
+  RigDraws draws{199, {{"lubricants/x@1", {"lubricant.relaxation_time_seconds"}}}};
+  const std::string table = rig_text(rows, kStribeck, OutputFormat::kTable, draws);
+  EXPECT_NE(table.find("+/-"), std::string::npos) << table;
+  EXPECT_NE(table.find("0.012"), std::string::npos) << table;
+  EXPECT_NE(table.find("from 199 draws"), std::string::npos) << table;
+  EXPECT_NE(table.find("refuses draws in 1 rows"), std::string::npos) << table;
+  EXPECT_NE(table.find("Taken as exact"), std::string::npos) << table;
+  const std::string csv = rig_text(rows, kStribeck, OutputFormat::kCsv, draws);
+  for (const char* header :
+       {"traction_coefficient_standard_uncertainty,traction_coefficient_interval_minimum,"
+        "traction_coefficient_interval_maximum",
+        "refused_draws"}) {
+    EXPECT_NE(csv.find(header), std::string::npos) << csv;
+  }
+  EXPECT_NE(csv.find(",0.0123,0.09,0.14,"), std::string::npos) << csv;
+  EXPECT_EQ(rig_text(rows, kStribeck, OutputFormat::kCsv).find("draws"), std::string::npos);
 }
 
 TEST(MeasuredPoints, AreReadByTheNamesOfTheirColumns) {

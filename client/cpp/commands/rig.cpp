@@ -22,7 +22,11 @@ struct RigFlags {
   RigSettings given;  ///< empty lists: the command's
   std::string plot_path, measured_path;
   std::vector<std::string> map;  ///< words of the settings across and up; empty: no map
+  std::optional<int> draws;      ///< of the inputs; empty: kRigDraws, of a map 0
 };
+
+/// The 95 % interval ends at the fifth draw from either end.
+constexpr int kRigDraws = 199;
 
 /// A rig command: what it shows, and what its machine is and does by default.
 struct RigCommand {
@@ -106,6 +110,11 @@ void add_rig_flags(FlagList& list, RigFlags& flags, const RigCommand& rig) {
              "may list their values; each other setting has its first value.",
              [&flags](const std::string& word) { flags.map.push_back(word); })
       .field = "grid";
+  list.group("Uncertainty");
+  list.whole_number("--draws", {"-", "0, or 19 to 1999", "199; of a map 0"},
+                    "Draws of the parameters of lubricant and surface for the uncertainties of the "
+                    "figures; 0: none",
+                    [&flags](int value) { flags.draws = value; });
   list.group("Files");
   list.text("--measured", "FILE",
             std::string("CSV with columns ") + rig.view.x + " and " + rig.view.y +
@@ -177,13 +186,17 @@ int run_rig(const RigFlags& flags, const RigCommand& rig, const CommonOptions& o
   v1::EvaluateRigRequest request = flags.request;
   std::vector<bool> models{false};
   if (request.model_options().isothermal()) models.push_back(true);
+  request.set_draws(flags.draws.value_or(flags.map.empty() ? kRigDraws : 0));
   Connection connection = options.connect();
   std::vector<RigRow> rows;
+  RigDraws draws{request.draws(), {}};
   std::string version;
   const auto add = [&](const v1::EvaluateRigResponse& answer,
                        const std::vector<std::optional<double>>& measured) {
     for (RigRow& row : rig_rows(request, answer, measured)) rows.push_back(std::move(row));
     version = answer.model_version();
+    draws.exact_inputs[answer.lubricant_revision()] = {answer.inputs_without_uncertainty().begin(),
+                                                       answer.inputs_without_uncertainty().end()};
   };
   for (const std::string& fluid : flags.fluids) {
     for (const bool is_isothermal : models) {
@@ -201,7 +214,7 @@ int run_rig(const RigFlags& flags, const RigCommand& rig, const CommonOptions& o
     }
   }
   if (flags.map.empty()) {
-    std::cout << rig_text(rows, rig.view, options.output_format);
+    std::cout << rig_text(rows, rig.view, options.output_format, draws);
     if (!flags.plot_path.empty()) write_file(flags.plot_path, rig_plot(rows, rig.view, version));
     return kExitOk;
   }
@@ -209,7 +222,7 @@ int run_rig(const RigFlags& flags, const RigCommand& rig, const CommonOptions& o
       map_of(rows, rig.view, *rig_axis(flags.map[0]), *rig_axis(flags.map[1]), settings, version);
   std::cout << (options.output_format == OutputFormat::kTable
                     ? map_table(picture)
-                    : rig_text(rows, rig.view, options.output_format));
+                    : rig_text(rows, rig.view, options.output_format, draws));
   if (!flags.plot_path.empty()) write_file(flags.plot_path, map_plot(picture));
   return kExitOk;
 }

@@ -45,6 +45,25 @@ std::vector<RigLine> lines_of(const std::vector<RigRow>& rows, const RigView& vi
   return out;
 }
 
+/// Adds the interval of the view's y at one place; none where no uncertainty of the inputs moves
+/// it.
+void add_rig_band(const RigRow& row, const RigView& view, Series& line) {
+  const auto edge = [&](double RigBand::*end) {
+    const auto band = row.bands.find(view.y);
+    if (band == row.bands.end()) return std::nan("");
+    const double value = band->second.*end * view.y_factor;
+    if (!view.is_logarithmic) return value;
+    return value > 0 ? std::log10(value) : std::nan("");
+  };
+  line.low.push_back(edge(&RigBand::interval_minimum));
+  line.high.push_back(edge(&RigBand::interval_maximum));
+}
+
+bool has_bands(const std::vector<RigRow>& rows, const RigView& view) {
+  return std::any_of(rows.begin(), rows.end(),
+                     [&view](const RigRow& row) { return row.bands.contains(view.y); });
+}
+
 }  // namespace
 
 std::string rig_plot(const std::vector<RigRow>& rows, const RigView& view,
@@ -77,6 +96,7 @@ std::string rig_plot(const std::vector<RigRow>& rows, const RigView& view,
     for (const RigRow* row : line.swept) {
       computed.x.push_back(x_of(*row));
       computed.y.push_back(axis(row->figures.at(view.y) * view.y_factor));
+      add_rig_band(*row, view, computed);
     }
     Series measured;
     measured.colour = look.colour;
@@ -90,12 +110,17 @@ std::string rig_plot(const std::vector<RigRow>& rows, const RigView& view,
     if (!computed.x.empty()) panel.series.push_back(std::move(computed));
     if (!measured.x.empty() && !line.is_isothermal) panel.series.push_back(std::move(measured));
   }
-  const std::vector<std::string> below = footer_lines(
-      {std::string("Contact of a rig by the model of the axle, ") + model_version +
-       (std::any_of(rows.begin(), rows.end(), [](const RigRow& row) { return row.is_isothermal; })
-            ? ". Dashed: isothermal."
-            : ".")},
-      kRigWidth - 2 * kRigLeft);
+  std::vector<std::string> texts{
+      std::string("Contact of a rig by the model of the axle, ") + model_version +
+      (std::any_of(rows.begin(), rows.end(), [](const RigRow& row) { return row.is_isothermal; })
+           ? ". Dashed: isothermal."
+           : ".")};
+  if (has_bands(rows, view)) {
+    texts.emplace_back(
+        "Bands: 95 % intervals by the stated uncertainties of the inputs; errors that curves share "
+        "make bands overlap more than differences do.");
+  }
+  const std::vector<std::string> below = footer_lines(texts, kRigWidth - 2 * kRigLeft);
   const double footer_top = 90 + kRigPanelHeight + 66;
   Svg svg(kRigWidth, footer_top + kFooterPitch * static_cast<double>(below.size()));
   svg.text({kRigLeft, 40}, view.title, {21, "start", "#111", true, 0});

@@ -44,17 +44,6 @@ std::string interval_text(const v1::UncertainFigure& figure) {
          fixed(figure.interval_maximum(), decimals);
 }
 
-/// Returns "pressure viscosity coefficient" for "lubricant.pressure_viscosity_coefficient_per_...".
-std::string input_text(const std::string& input) {
-  std::vector<std::string> labels;
-  for (const std::string& field : split(input, ' ')) {
-    labels.push_back(label_of_field(field.substr(field.rfind('.') + 1)));
-  }
-  if (labels.size() == 3) return "fitted viscosity law";
-  if (labels.size() == 2) return "density law";
-  return joined(labels, ", ");
-}
-
 std::string share_text(double share) {
   const double percent = 100 * share;
   if (percent > 99.5 && share < 1) return "> 99 %";
@@ -377,6 +366,16 @@ void add_exact_inputs(const v1::ComparePointsResponse& response, Sheet& sheet) {
 }
 
 }  // namespace
+
+std::string input_text(const std::string& input) {
+  std::vector<std::string> labels;
+  for (const std::string& field : split(input, ' ')) {
+    labels.push_back(label_of_field(field.substr(field.rfind('.') + 1)));
+  }
+  if (labels.size() == 3) return "fitted viscosity law";
+  if (labels.size() == 2) return "density law";
+  return joined(labels, ", ");
+}
 
 std::string with_errors(const v1::UncertainFigure& figure, const std::string& unit) {
   return value_text(figure) + (unit.empty() ? "" : " " + unit) + " +/- " +

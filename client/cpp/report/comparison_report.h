@@ -30,6 +30,10 @@ std::string input_error_text(const v1::UncertainFigure& figure);
 /// Returns sentences on what makes the uncertainty of the first lubricant's mean over a curve.
 std::string curve_uncertainty_remark(const v1::ComparePointsResponse& response);
 
+/// Returns the name of a source of error: "pressure viscosity coefficient" for
+/// "lubricant.pressure_viscosity_coefficient_per_pascal".
+std::string input_text(const std::string& input);
+
 /// Returns e.g. "1.18 % +/- 0.42 (inputs) +/- 0.0004 (solver)".
 std::string with_errors(const v1::UncertainFigure& figure, const std::string& unit);
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <set>
 
 #include "client/cpp/failure.h"
+#include "client/cpp/report/comparison_report.h"
 #include "client/cpp/text/csv.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
@@ -17,7 +19,7 @@ namespace {
 
 using google::protobuf::FieldDescriptor;
 
-CsvRow csv_row(const RigRow& row, const RigView& view) {
+CsvRow csv_row(const RigRow& row, const RigView& view, int draws) {
   CsvRow out{{"lubricant", row.fluid}, {"model", row.is_isothermal ? "isothermal" : "thermal"}};
   append_fields(row.condition, "", out);
   for (const std::string& column : rig_columns()) {
@@ -28,10 +30,21 @@ CsvRow csv_row(const RigRow& row, const RigView& view) {
   out.emplace_back(std::string("measured_") + view.y, row.measured ? shortest(*row.measured) : "");
   out.emplace_back("residual_percent", residual ? shortest(*residual) : "");
   out.emplace_back("refusal", row.refusal);
+  if (draws == 0) return out;
+  for (const std::string& column : rig_columns()) {
+    const auto band = row.bands.find(column);
+    const auto add = [&](const char* end, double RigBand::*value) {
+      out.emplace_back(column + end, band == row.bands.end() ? "" : shortest(band->second.*value));
+    };
+    add("_standard_uncertainty", &RigBand::standard_uncertainty);
+    add("_interval_minimum", &RigBand::interval_minimum);
+    add("_interval_maximum", &RigBand::interval_maximum);
+  }
+  out.emplace_back("refused_draws", std::to_string(row.refused_draws));
   return out;
 }
 
-std::string json_of(const std::vector<RigRow>& rows, const RigView& view) {
+std::string json_of(const std::vector<RigRow>& rows, const RigView& view, const RigDraws& draws) {
   const auto quoted = [](const std::string& text) {
     std::string out = "\"";
     for (const char c : text) {
@@ -44,7 +57,7 @@ std::string json_of(const std::vector<RigRow>& rows, const RigView& view) {
   for (const RigRow& row : rows) {
     out += &row == &rows.front() ? "\n {" : ",\n {";
     bool is_first = true;
-    for (const auto& [header, cell] : csv_row(row, view)) {
+    for (const auto& [header, cell] : csv_row(row, view, draws.draws)) {
       if (cell.empty()) continue;
       const bool is_text = header == "lubricant" || header == "model" || header == "refusal" ||
                            cell.find_first_of("NI") != std::string::npos;  // NaN, Infinity
@@ -53,21 +66,66 @@ std::string json_of(const std::vector<RigRow>& rows, const RigView& view) {
     }
     out += "}";
   }
-  return out + "\n]}\n";
+  out += "\n]";
+  if (draws.draws > 0) {
+    out += ",\n\"draws\": " + std::to_string(draws.draws) + ",\n\"inputs_without_uncertainty\": {";
+    bool is_first_fluid = true;
+    for (const auto& [fluid, inputs] : draws.exact_inputs) {
+      std::vector<std::string> words;
+      for (const std::string& input : inputs) words.push_back(quoted(input));
+      out +=
+          (is_first_fluid ? "" : ",") + ("\n " + quoted(fluid)) + ": [" + joined(words, ", ") + "]";
+      is_first_fluid = false;
+    }
+    out += "\n}";
+  }
+  return out + "}\n";
+}
+
+/// A figure as a table shows it.
+struct ShownFigure {
+  const char *column, *title, *unit;
+  double factor, offset;
+  int digits;
+  bool is_share;  ///< with one decimal
+};
+constexpr ShownFigure kShownFigures[] = {
+    {"traction_coefficient", "traction", "", 1, 0, 4, false},
+    {"central_film_thickness_metres", "h_cen", "nm", 1e9, 0, 4, false},
+    {"minimum_film_thickness_metres", "h_min", "nm", 1e9, 0, 4, false},
+    {"film_ratio", "lambda", "", 1, 0, 3, false},
+    {"mean_pressure_pascals", "p_mean", "GPa", 1e-9, 0, 4, false},
+    {"maximum_pressure_pascals", "p_max", "GPa", 1e-9, 0, 4, false},
+    {"contact_temperature_kelvin", "contact", "C", 1, -kZeroCelsius, 4, false},
+    {"boundary_friction_share", "boundary", "%", 100, 0, 0, true},
+    {"limiting_stress_area_share", "limited", "% area", 100, 0, 0, true}};
+
+/// Returns the band of the view's y; nullptr if no uncertainty of the inputs moves it.
+const RigBand* shown_band(const RigRow& row, const RigView& view) {
+  const auto found = row.bands.find(view.y);
+  return found == row.bands.end() ? nullptr : &found->second;
 }
 
 std::string table_of(const std::vector<RigRow>& rows, const RigView& view) {
   using enum Table::Align;
-  std::vector<Table::Column> columns{
-      {"lubricant", "", kLeft},   {"model", "", kLeft},          {"load", "N", kDecimal},
-      {"speed", "m/s", kDecimal}, {"slide-roll", "%", kDecimal}, {"oil", "C", kDecimal},
-      {"traction", "", kDecimal}, {"h_cen", "nm", kDecimal},     {"h_min", "nm", kDecimal},
-      {"lambda", "", kDecimal},   {"p_mean", "GPa", kDecimal},   {"p_max", "GPa", kDecimal},
-      {"contact", "C", kDecimal}, {"boundary", "%", kDecimal},   {"limited", "% area", kDecimal},
-      {"measured", "", kDecimal}, {"residual", "%", kDecimal}};
-  bool is_measured = false;
-  for (const RigRow& row : rows) is_measured = is_measured || row.measured.has_value();
-  if (!is_measured) columns.resize(columns.size() - 2);
+  std::vector<Table::Column> columns{{"lubricant", "", kLeft},      {"model", "", kLeft},
+                                     {"load", "N", kDecimal},       {"speed", "m/s", kDecimal},
+                                     {"slide-roll", "%", kDecimal}, {"oil", "C", kDecimal}};
+  bool is_measured = false, has_bands = false;
+  for (const RigRow& row : rows) {
+    is_measured = is_measured || row.measured.has_value();
+    has_bands = has_bands || shown_band(row, view) != nullptr;
+  }
+  for (const ShownFigure& figure : kShownFigures) {
+    columns.push_back({figure.title, figure.unit, kDecimal});
+    if (has_bands && std::string(figure.column) == view.y) {
+      columns.push_back({"+/-", figure.unit, kDecimal});
+    }
+  }
+  if (is_measured) {
+    columns.push_back({"measured", "", kDecimal});
+    columns.push_back({"residual", "%", kDecimal});
+  }
   Table table(columns);
   std::string refusals;
   for (const RigRow& row : rows) {
@@ -81,18 +139,13 @@ std::string table_of(const std::vector<RigRow>& rows, const RigView& view) {
     if (row.figures.empty()) {
       refusals += "refused: " + row.refusal + "\n";
     } else {
-      const auto cell = [&](const char* column, double factor, double offset, int digits) {
-        cells.push_back(significant(row.figures.at(column) * factor + offset, digits));
-      };
-      cell("traction_coefficient", 1, 0, 4);
-      cell("central_film_thickness_metres", 1e9, 0, 4);
-      cell("minimum_film_thickness_metres", 1e9, 0, 4);
-      cell("film_ratio", 1, 0, 3);
-      cell("mean_pressure_pascals", 1e-9, 0, 4);
-      cell("maximum_pressure_pascals", 1e-9, 0, 4);
-      cell("contact_temperature_kelvin", 1, -kZeroCelsius, 4);
-      for (const char* share : {"boundary_friction_share", "limiting_stress_area_share"}) {
-        cells.push_back(fixed(100 * row.figures.at(share), 1));
+      for (const ShownFigure& figure : kShownFigures) {
+        const double value = row.figures.at(figure.column) * figure.factor + figure.offset;
+        cells.push_back(figure.is_share ? fixed(value, 1) : significant(value, figure.digits));
+        if (!has_bands || std::string(figure.column) != view.y) continue;
+        const RigBand* band = shown_band(row, view);
+        cells.push_back(
+            band == nullptr ? "" : significant(figure.factor * band->standard_uncertainty, 2));
       }
       if (const auto residual = residual_percent(row, view)) {
         cells.push_back(significant(*row.measured * view.y_factor, 4));
@@ -102,6 +155,39 @@ std::string table_of(const std::vector<RigRow>& rows, const RigView& view) {
     table.add_row(std::move(cells));
   }
   return table.text() + refusals;
+}
+
+/// Returns what stands behind the uncertainties of a table.
+std::string draws_summary(const std::vector<RigRow>& rows, const RigView& view,
+                          const RigDraws& draws) {
+  if (draws.draws == 0) return "";
+  std::set<std::string> uncertain;
+  int refusing_rows = 0;
+  for (const RigRow& row : rows) {
+    if (shown_band(row, view) != nullptr) uncertain.insert(row.fluid);
+    if (row.refused_draws > 0) ++refusing_rows;
+  }
+  Sheet sheet;
+  sheet.heading("Uncertainty");
+  if (!uncertain.empty()) {
+    sheet.remark("+/-: standard uncertainty by the stated uncertainties of the inputs, from " +
+                 std::to_string(draws.draws) + " draws of them.");
+  }
+  if (refusing_rows > 0) {
+    sheet.remark("The model refuses draws in " + std::to_string(refusing_rows) +
+                 " rows. Where it refuses more than 5 %, no uncertainty is stated.");
+  }
+  for (const auto& [fluid, inputs] : draws.exact_inputs) {
+    const std::string id = fluid.substr(fluid.find('/') + 1);
+    std::vector<std::string> names;
+    for (const std::string& input : inputs) names.push_back(input_text(input));
+    sheet.remark(uncertain.contains(fluid)
+                     ? "Taken as exact, because no uncertainty is stated, of " + id + ": " +
+                           joined(names, ", ") + "."
+                     : id + ": no stated uncertainty of an input moves the " +
+                           label_of_field(view.y) + ".");
+  }
+  return sheet.text();
 }
 
 std::string residual_summary(const std::vector<RigRow>& rows, const RigView& view) {
@@ -155,6 +241,7 @@ std::vector<RigRow> rig_rows(const v1::EvaluateRigRequest& request,
     row.is_isothermal = request.model_options().isothermal();
     row.condition = request.conditions(i);
     if (!measured.empty()) row.measured = measured[static_cast<std::size_t>(i)];
+    if (answer.refused_draws_size() > 0) row.refused_draws = answer.refused_draws(i);
     const int refusal = answer.refusal_numbers(i);
     if (refusal > 0) {
       row.refusal = answer.refusals(refusal - 1).message();
@@ -162,6 +249,11 @@ std::vector<RigRow> rig_rows(const v1::EvaluateRigRequest& request,
       for (const std::string& column : rig_columns()) {
         row.figures[column] = answer.GetReflection()->GetRepeatedDouble(
             answer, descriptor.FindFieldByName(column), i);
+      }
+      for (const v1::UncertainRigFigure& each : answer.uncertainties()) {
+        if (std::isnan(row.figures.at(each.figure()))) continue;
+        row.bands[each.figure()] = {each.standard_uncertainty(i), each.interval_minimum(i),
+                                    each.interval_maximum(i)};
       }
     }
     out.push_back(std::move(row));
@@ -174,11 +266,14 @@ std::optional<double> residual_percent(const RigRow& row, const RigView& view) {
   return 100 * (row.figures.at(view.y) / *row.measured - 1);
 }
 
-std::string rig_text(const std::vector<RigRow>& rows, const RigView& view, OutputFormat format) {
-  if (format == OutputFormat::kJson) return json_of(rows, view);
-  if (format == OutputFormat::kTable) return table_of(rows, view) + residual_summary(rows, view);
+std::string rig_text(const std::vector<RigRow>& rows, const RigView& view, OutputFormat format,
+                     const RigDraws& draws) {
+  if (format == OutputFormat::kJson) return json_of(rows, view, draws);
+  if (format == OutputFormat::kTable) {
+    return table_of(rows, view) + residual_summary(rows, view) + draws_summary(rows, view, draws);
+  }
   std::vector<CsvRow> lines;
-  for (const RigRow& row : rows) lines.push_back(csv_row(row, view));
+  for (const RigRow& row : rows) lines.push_back(csv_row(row, view, draws.draws));
   return csv_text(lines);
 }
 

@@ -22,6 +22,12 @@ struct RigView {
   bool is_logarithmic;  ///< both axes
 };
 
+/// What the stated uncertainties of the inputs make of a figure, in its unit; NaN if the model
+/// refused too many draws.
+struct RigBand {
+  double standard_uncertainty, interval_minimum, interval_maximum;
+};
+
 /// One condition with its figures.
 struct RigRow {
   std::string fluid;  ///< revision, e.g. "lubricants/paper-fluid-1@1"
@@ -29,7 +35,16 @@ struct RigRow {
   v1::RigCondition condition;
   std::map<std::string, double> figures;  ///< by column; empty for a refused row
   std::string refusal;                    ///< why not; empty: none
-  std::optional<double> measured;         ///< of the view's y, in the unit of its column
+  std::map<std::string, RigBand> bands;   ///< by column, of figures that the draws move
+  int refused_draws = 0;
+  std::optional<double> measured;  ///< of the view's y, in the unit of its column
+};
+
+/// How the bands of the rows came about.
+struct RigDraws {
+  int draws = 0;  ///< of the inputs; 0: no bands
+  /// By fluid (as in RigRow): inputs that count as exact.
+  std::map<std::string, std::vector<std::string>> exact_inputs;
 };
 
 /// Returns the columns of figures of an answer, in the order of its fields.
@@ -44,9 +59,10 @@ std::vector<RigRow> rig_rows(const v1::EvaluateRigRequest& request,
 std::optional<double> residual_percent(const RigRow& row, const RigView& view);
 
 /// Returns the rows in one of the forms of --output. JSON is an object whose "rows" are objects
-/// with the headers of CSV. Below a table stands the RMS residual of each fluid, if anything was
-/// measured.
-std::string rig_text(const std::vector<RigRow>& rows, const RigView& view, OutputFormat format);
+/// with the headers of CSV. A table has the standard uncertainty of the view's y; below it stand
+/// what is behind that, and the RMS residual of each fluid if anything was measured.
+std::string rig_text(const std::vector<RigRow>& rows, const RigView& view, OutputFormat format,
+                     const RigDraws& draws = {});
 
 /// Returns the condition and measured value of each line of a CSV: columns of the view's x and y,
 /// by the names of their fields; others of RigCondition are optional and otherwise those of
@@ -59,7 +75,7 @@ std::vector<MeasuredPoint> read_measured(const std::string& text, const std::str
                                          const RigView& view, const v1::RigCondition& usual);
 
 /// Draws a line for each fluid, load, temperature, and speed or slide-roll ratio that is not swept;
-/// isothermal lines are dashed, measured points hollow.
+/// isothermal lines are dashed, measured points hollow, 95 % intervals translucent bands.
 std::string rig_plot(const std::vector<RigRow>& rows, const RigView& view,
                      const std::string& model_version);
 

@@ -18,11 +18,13 @@ export interface RigRequest {
   surface: string; // id; "": smooth specimens
   roughness: number; // sigma_G [nm]; 0: that of the surface
   options: string[];
+  hasBands: boolean; // of the uncertainty of the inputs
 }
 
 const LEAST_SPEED = { film: 0.03, stribeck: 0.003 }; // [m/s]
 const SPEEDS_PER_DECADE = 6;
 const MOST_SPEED = 3; // [m/s]
+const DRAWS = 199; // of the inputs: the 95 % interval ends at the fifth from either end
 
 const speedsFrom = (first: number): number[] => {
   const steps = Math.round(SPEEDS_PER_DECADE * Math.log10(MOST_SPEED / first));
@@ -30,7 +32,7 @@ const speedsFrom = (first: number): number[] => {
 };
 
 /** A kind of rig: what it varies, what it shows first, and its machine if nobody states another. */
-export const RIGS: Record<RigKind, { label: string; about: string; swept: number[]; x: { label: string; isLogarithmic: boolean }; first: string; usual: Omit<RigRequest, 'kind' | 'fluids'> }> = {
+export const RIGS: Record<RigKind, { label: string; about: string; swept: number[]; x: { label: string; isLogarithmic: boolean }; first: string; usual: Omit<RigRequest, 'kind' | 'fluids' | 'hasBands'> }> = {
   traction: {
     label: 'Traction', about: 'Friction of a ball on a disc against the slide-roll ratio',
     swept: [0, 0.25, 0.5, 1, 1.5, 2, 3, 4, 5, 7, 10, 15, 20, 25, 30, 35, 40, 45, 50],
@@ -85,7 +87,7 @@ export function rigRequestOf(query: URLSearchParams): RigRequest {
     disc: query.get('disc') === 'glass' ? 'glass' : query.get('disc') === 'steel' ? 'steel' : usual.disc,
     surface: query.has('surface') ? (query.get('surface') === 'smooth' ? '' : query.get('surface')!) : usual.surface,
     roughness: query.has('rough') ? Number(query.get('rough')) : usual.roughness,
-    options: words(query.get('opt')),
+    options: words(query.get('opt')), hasBands: query.get('u') !== '0',
   };
 }
 
@@ -97,7 +99,7 @@ export function rigQueryOf(request: RigRequest): Record<string, string | undefin
     ...Object.fromEntries(LISTS.map((key) => [NUMBERS[key], unless(request[key].join(','), usual[key].join(','))])),
     radius: unless(String(request.radius), String(usual.radius)), disc: unless(request.disc, usual.disc),
     surface: unless(request.surface || 'smooth', usual.surface || 'smooth'), rough: unless(String(request.roughness), String(usual.roughness)),
-    opt: request.options.join(',') || undefined,
+    opt: request.options.join(',') || undefined, u: request.hasBands ? undefined : '0',
   };
 }
 
@@ -144,6 +146,7 @@ export function callsOf(request: RigRequest): RigCall[] {
       radius_x_metres: Number((1e-3 * request.radius).toPrecision(12)),
       ...(request.disc === 'glass' ? { body_2: GLASS } : {}),
       ...(options.length > 0 ? { model_options: Object.fromEntries(options.map((each) => [each, true])) } : {}),
+      ...(request.hasBands ? { draws: DRAWS } : {}),
       conditions: settingsOf(request).flatMap((setting) => RIGS[request.kind].swept.map((swept) => conditionOf(setting, swept))),
     },
   })));
@@ -178,6 +181,20 @@ export function rigCurvesOf(request: RigRequest, answers: { call: RigCall; answe
 export const rigValue = (curve: RigCurve, quantity: RigQuantity, row: number): number | null =>
   finite((curve.answer[quantity.column] as (number | string)[] | undefined)?.[curve.firstRow + row]);
 
+export interface RigBand {
+  error: number; // standard uncertainty
+  low: number; // ends of the 95 % interval
+  high: number;
+}
+
+/** What the uncertainty of the inputs makes of a figure at a row; null if it does not move the figure, or the model refused too many draws. */
+export function rigBand(curve: RigCurve, quantity: RigQuantity, row: number): RigBand | null {
+  const band = curve.answer.uncertainties?.find((each) => each.figure === quantity.column);
+  const at = (column?: (number | string)[]) => finite(column?.[curve.firstRow + row]);
+  const [error, low, high] = [at(band?.standard_uncertainty), at(band?.interval_minimum), at(band?.interval_maximum)];
+  return error === null || low === null || high === null ? null : { error, low, high };
+}
+
 export function rigSpec(request: RigRequest, curves: RigCurve[], quantity: RigQuantity, titleOf: (fluid: string) => string): Spec {
   const rig = RIGS[request.kind];
   const isLogarithmic = rig.x.isLogarithmic && quantity.isLogarithmic === true;
@@ -190,12 +207,21 @@ export function rigSpec(request: RigRequest, curves: RigCurve[], quantity: RigQu
       return value === null || (isLogarithmic && value <= 0) ? null : shown(value, quantity.unit);
     }),
     hollow: curve.x.map(() => false),
+    ...endsOf(curve, quantity, isLogarithmic),
   }));
   return {
     title: `${quantity.label}${quantity.unit.symbol && `, ${quantity.unit.symbol}`}`, xLabel: rig.x.label, yLabel: quantity.unit.symbol, lines,
     parted: [], caution: [], outside: [], levels: quantity.id === 'ratio' ? [{ value: 1, label: 'film as high as the roughness' }] : [],
     fromZero: !isLogarithmic && quantity.unit.offset === 0, xRange: [rig.swept[0]!, rig.swept.at(-1)!], xIsLogarithmic: rig.x.isLogarithmic, yIsLogarithmic: isLogarithmic,
   };
+}
+
+/** The ends of a curve's band; none where no uncertainty of the inputs moves it. */
+function endsOf(curve: RigCurve, quantity: RigQuantity, isLogarithmic: boolean): Pick<Line, 'low' | 'high'> {
+  const bands = curve.x.map((_, row) => rigBand(curve, quantity, row));
+  if (bands.every((band) => band === null)) return {};
+  const end = (read: (band: RigBand) => number) => bands.map((band) => (band === null || (isLogarithmic && band.low <= 0) ? null : shown(read(band), quantity.unit)));
+  return { low: end((band) => band.low), high: end((band) => band.high) };
 }
 
 /** Commands that compute the same figures. */
@@ -210,5 +236,6 @@ export function rigCommandsOf(request: RigRequest, project: string): string[] {
     ...(request.surface === usual.surface ? [] : ['--surface', request.surface || 'smooth']),
     ...(request.roughness === (request.surface === usual.surface ? usual.roughness : 0) ? [] : ['--roughness', `${request.roughness}nm`]),
     ...request.options.map((each) => `--${each.replaceAll('_', '-')}`),
+    ...(request.hasBands ? [] : ['--draws', '0']),
   ].join(' ')];
 }

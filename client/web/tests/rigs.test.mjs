@@ -43,6 +43,19 @@ test('a rig is evaluated as it is set, and its numbers, its table and its comman
   for (const row of rows) assert.ok(known.has(Number(row[3])), `the command prints ${row[3]}`);
 });
 
+test('the uncertainty of a fluid is a band of its curve, and can be switched off', async () => {
+  await output(TRIBODYN, ['--server', `unix:${server.folder}/socket`, 'lubricants', 'create', 'sheet-oil', '--kv40', '103', '--kv100', '15.1', '--density15', '868', '--base-oil-class', 'pao']);
+  await page.goto(`${server.address}/rigs?kind=film&f=sheet-oil`);
+  await page.getByText('holds the curve with 95').waitFor();
+  await page.locator('.read-out tbody', { hasText: '±' }).waitFor();
+  assert.deepEqual(await foreignNumbers(page), []);
+  await page.getByLabel('Uncertainty of the inputs').uncheck();
+  await page.waitForURL(/u=0$/);
+  await page.getByText('holds the curve with 95').waitFor({ state: 'detached' });
+  await page.locator('.read-out tbody tr').first().waitFor();
+  assert.ok(!(await page.locator('.read-out tbody').textContent()).includes('±'));
+});
+
 test('a mistake in the setting of a rig is named at its field', async () => {
   await page.goto(`${server.address}/rigs?kind=stribeck&f=paper-fluid-1&load=-5`);
   await page.locator('.panel .problem', { hasText: 'load_newtons' }).waitFor();

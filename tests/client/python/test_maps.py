@@ -37,6 +37,28 @@ def test_a_rig_answers_every_combination_of_its_settings(client):
     assert table["traction_coefficient"][0] == 0 and table["traction_coefficient"][1] > 0.01
 
 
+def test_draws_give_the_figures_of_a_rig_their_uncertainty(client):
+    client.lubricants.create(
+        "drawn-oil", FLUID, **{"relaxation_time.standard_uncertainty": "100 ns"}
+    )
+    settings = {
+        "radius_x_metres": "9.525 mm",
+        "loads_newtons": 35,
+        "entrainment_speeds_metres_per_second": [0.5, 2],
+        "slide_roll_ratios_percent": 2,
+    }
+    assert not any("interval" in name for name in client.rig("drawn-oil", **settings))
+    table = client.rig("drawn-oil", draws=99, **settings)
+    traction = table["traction_coefficient"]
+    assert np.all(table["traction_coefficient_standard_uncertainty"] > 0)
+    assert np.all(table["traction_coefficient_interval_minimum"] < traction)
+    assert np.all(table["traction_coefficient_interval_maximum"] > traction)
+    assert "central_film_thickness_metres_interval_minimum" not in table
+    assert list(table["refused_draws"]) == [0, 0]
+    exact = table.attrs["inputs_without_uncertainty"]
+    assert exact and not any("relaxation_time" in name for name in exact)
+
+
 def test_a_spectrum_is_that_of_its_history(client):
     history = client.histories(
         FLUID, ["mesh_force_newtons"], samples_per_mesh_cycle=96, speed_kilometres_per_hour=60

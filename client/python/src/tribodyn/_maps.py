@@ -102,12 +102,19 @@ async def rig(
     for each in answer.DESCRIPTOR.fields:
         if each.label == each.LABEL_REPEATED and each.cpp_type == each.CPPTYPE_DOUBLE:
             columns.setdefault(each.name, np.array(getattr(answer, each.name)))
+    for each in answer.uncertainties:
+        for end in ("standard_uncertainty", "interval_minimum", "interval_maximum"):
+            columns[f"{each.figure}_{end}"] = np.array(getattr(each, end))
     columns["status"], columns["status_message"] = _statuses(answer)
-    warnings = {
+    attrs = _attrs(answer)
+    attrs["range_warnings"] = {
         each.code: {"message": each.message, "rows": list(each.rows)}
         for each in answer.range_warnings
     }
-    return frame(columns, {**_attrs(answer), "range_warnings": warnings})
+    if request.draws > 0:
+        columns["refused_draws"] = np.array(answer.refused_draws)
+        attrs["inputs_without_uncertainty"] = list(answer.inputs_without_uncertainty)
+    return frame(columns, attrs)
 
 
 async def spectrum(

@@ -424,9 +424,11 @@ class Client:
         body_1: Mapping[str, float] | None = None,
         body_2: Mapping[str, float] | None = None,
         model_options: Mapping[str, Any] | None = None,
+        draws: int = 0,
     ) -> Frame:
         arguments = Arguments()
         request = EvaluateRigRequest(
+            draws=draws,
             lubricant=full_name("lubricants", lubricant),
             surface=full_name("surfaces", surface or ""),
             radius_x_metres=arguments.number("radius_x_metres", radius_x_metres),

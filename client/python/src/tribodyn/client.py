@@ -829,6 +829,7 @@ class Client:
         body_1: Mapping[str, float] | None = None,
         body_2: Mapping[str, float] | None = None,
         model_options: Mapping[str, Any] | None = None,
+        draws: int = 0,
     ) -> Frame:
         """Returns traction, film, pressures and temperatures of a ball or barrelled ring on a disc at
         every combination of its settings, at most 5000: a map if two of them have many values.
@@ -836,7 +837,10 @@ class Client:
         Either loads or mean pressures (of the dry contact by Hertz) are stated. ``radius_y_metres``
         0: a ball. ``surface`` None: smooth specimens. ``body_1`` (ball or ring) and ``body_2`` (disc)
         are the fields of RigBody; None: steel of 210 GPa. A refused row has NaN, and the reason in
-        ``status``."""
+        ``status``. ``draws`` (19 to 1999) of the stated uncertainties of lubricant and surface add
+        ``{figure}_standard_uncertainty``, ``{figure}_interval_minimum`` and ``..._maximum`` (95 %)
+        for each figure that they move, and ``refused_draws``; ``attrs["inputs_without_uncertainty"]``
+        names what counts as exact."""
         return _LOOP.run(
             self._client.rig(
                 lubricant,
@@ -852,6 +856,7 @@ class Client:
                 body_1=body_1,
                 body_2=body_2,
                 model_options=model_options,
+                draws=draws,
             )
         )
 

@@ -13,7 +13,7 @@ import { idOf, revisionIdOf, rounded } from '../format';
 import { OPTIONS } from '../request';
 import { titlesOf, useLoaded, useLubricants } from '../resources';
 import {
-  callsOf, LISTS, rigCommandsOf, rigCurvesOf, rigQueryOf, RIG_QUANTITIES, rigRequestOf, RIGS, rigSpec, rigValue,
+  callsOf, LISTS, rigBand, rigCommandsOf, rigCurvesOf, rigQueryOf, RIG_QUANTITIES, rigRequestOf, RIGS, rigSpec, rigValue,
   type RigCurve, type RigKind, type RigRequest,
 } from '../rig';
 import { address, go, place, set } from '../router';
@@ -70,6 +70,12 @@ export function Rigs() {
                 ? <Notice kind="caution">Smooth specimens have no {quantity.label.toLowerCase()}: choose a surface.</Notice>
                 : <CurveChart spec={spec} height={matchMedia('(max-width: 640px)').matches ? 260 : 380} sync="rigs" onSpeed={setAt} />}
               <p class="axis-title">{spec.xLabel}</p>
+              <div class="under-chart">
+                {spec.lines.some((line) => line.low) && <ul class="key"><li><i class="swatch band" /> holds the curve with 95&nbsp;%, as far as the inputs decide</li></ul>}
+                <div class="switches">
+                  <label class="choice"><input type="checkbox" checked={request.hasBands} onChange={() => update({ ...request, hasBands: !request.hasBands })} /> Uncertainty of the inputs</label>
+                </div>
+              </div>
             </figure>
             <ReadOut request={request} curves={curves} titleOf={titleOf} at={at} onAt={setAt} />
             <Validity remarks={remarksOnce(given.flatMap((each) => each.answer.input_warnings ?? []))} isOpen={refusals.size > 0} isChecked={false}>
@@ -141,7 +147,7 @@ function Form({ request, onChange, titles, error }: { request: RigRequest; onCha
         <legend>Rig</legend>
         <div class="tabs" role="group" aria-label="Rig">
           {(Object.keys(RIGS) as RigKind[]).map((kind) => (
-            <button key={kind} aria-pressed={kind === request.kind} onClick={() => onChange({ ...RIGS[kind].usual, kind, fluids: request.fluids })}>{RIGS[kind].label}</button>
+            <button key={kind} aria-pressed={kind === request.kind} onClick={() => onChange({ ...RIGS[kind].usual, kind, fluids: request.fluids, hasBands: request.hasBands })}>{RIGS[kind].label}</button>
           ))}
         </div>
       </fieldset>
@@ -211,7 +217,7 @@ function ReadOut({ request, curves, titleOf, at, onAt }: {
             {curves.map((curve, k) => (
               <tr key={k}>
                 <th scope="row"><Swatch series={request.fluids.indexOf(curve.fluid)} />{[titleOf(curve.fluid), curve.label].filter((each) => each !== '').join(', ')}</th>
-                {has.map((each) => <td key={each.id} class="number"><Num value={rigValue(curve, each, row)} unit={each.unit} /></td>)}
+                {has.map((each) => <td key={each.id} class="number"><Num value={rigValue(curve, each, row)} error={rigBand(curve, each, row)?.error} unit={each.unit} withError /></td>)}
               </tr>
             ))}
           </tbody>
@@ -222,6 +228,12 @@ function ReadOut({ request, curves, titleOf, at, onAt }: {
 }
 
 function tableOf(curves: RigCurve[], titleOf: (fluid: string) => string): string {
-  return csvOf(['fluid', 'variant', 'x', ...RIG_QUANTITIES.map((each) => each.column as string)],
-    curves.flatMap((curve) => curve.x.map((x, row) => [titleOf(curve.fluid), `"${curve.label}"`, x, ...RIG_QUANTITIES.map((each) => rigValue(curve, each, row))])));
+  const uncertain = RIG_QUANTITIES.filter((quantity) => curves.some((curve) => curve.x.some((_, row) => rigBand(curve, quantity, row) !== null)));
+  return csvOf(['fluid', 'variant', 'x', ...RIG_QUANTITIES.map((each) => each.column as string),
+    ...uncertain.flatMap((each) => [`${each.column}_interval_minimum`, `${each.column}_interval_maximum`])],
+  curves.flatMap((curve) => curve.x.map((x, row) => [titleOf(curve.fluid), `"${curve.label}"`, x, ...RIG_QUANTITIES.map((each) => rigValue(curve, each, row)),
+    ...uncertain.flatMap((each) => {
+      const band = rigBand(curve, each, row);
+      return [band?.low ?? null, band?.high ?? null];
+    })])));
 }
