@@ -146,6 +146,33 @@ test('a reload amid a job goes on with its progress', async () => {
   await page.context().close();
 });
 
+test('a hidden page holds no stream, and catches up once it is seen', async () => {
+  const job = await server.call('POST', '/v1/simulations', slowJob(24, 3));
+  const page = await signedIn();
+  await page.addInitScript(() => {
+    window.streams = [];
+    window.EventSource = class extends EventSource {
+      constructor(...all) {
+        super(...all);
+        window.streams.push(this);
+      }
+    };
+  });
+  await page.goto(`${server.address}/curves?r=${job.name.split('/')[1]}`);
+  await page.locator('.progress-row').waitFor();
+  const show = (isHidden) => page.evaluate((value) => {
+    Object.defineProperty(document, 'hidden', { configurable: true, value });
+    document.dispatchEvent(new Event('visibilitychange'));
+    return window.streams.filter((each) => each.readyState !== EventSource.CLOSED).length;
+  }, isHidden);
+  assert.equal(await show(true), 0);
+  await server.call('POST', `/v1/${job.name}:cancel`, {});
+  assert.equal(await page.getByText(/cancelled/i).count(), 0);
+  assert.ok(await show(false) > 0);
+  await page.getByText(/cancelled/i).first().waitFor();
+  await page.context().close();
+});
+
 test('a server that is killed and restarted amid a job is noticed and found again', async () => {
   const job = await server.call('POST', '/v1/simulations', slowJob(24, 2));
   const page = await signedIn(`/curves?r=${job.name.split('/')[1]}`);

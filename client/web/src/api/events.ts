@@ -10,13 +10,16 @@ export interface Stream {
 /**
  * Follows a stream of events from the one with the number `first` on. The stream is opened again
  * until close() is called or the server has ended it; `onReopen` is called before events that may
- * repeat what is shown already.
+ * repeat what is shown already. While the page is hidden it has no stream: a browser opens six
+ * connections to a server for all its tabs together.
  */
 function follow<Message>(addressAfter: (last: string) => string, first: string, onEvent: (event: Message) => void, onReopen: () => void): Stream {
   let source: EventSource | undefined;
   let timer: number | undefined;
   let last = first;
   const open = () => {
+    source?.close();
+    if (document.hidden) return;
     source = new EventSource(addressAfter(last));
     source.onmessage = (message) => {
       if (message.lastEventId !== '') last = message.lastEventId;
@@ -41,13 +44,17 @@ function follow<Message>(addressAfter: (last: string) => string, first: string, 
     source?.close();
     clearTimeout(timer);
     unsubscribe();
+    document.removeEventListener('visibilitychange', openAgain);
+  };
+  const openAgain = () => {
+    clearTimeout(timer);
+    if (!document.hidden) onReopen();
+    open();
   };
   const unsubscribe = awaySince.subscribe(() => {
-    if (awaySince.value !== null) return;
-    source?.close();
-    onReopen();
-    open();
+    if (awaySince.value === null) openAgain();
   });
+  document.addEventListener('visibilitychange', openAgain);
   open();
   return { close };
 }

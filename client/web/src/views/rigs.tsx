@@ -230,10 +230,10 @@ function ReadOut({ request, curves, titleOf, at, onAt }: {
 function tableOf(curves: RigCurve[], titleOf: (fluid: string) => string): string {
   const uncertain = RIG_QUANTITIES.filter((quantity) => curves.some((curve) => curve.x.some((_, row) => rigBand(curve, quantity, row) !== null)));
   return csvOf(['fluid', 'variant', 'x', ...RIG_QUANTITIES.map((each) => each.column as string),
-    ...uncertain.flatMap((each) => [`${each.column}_interval_minimum`, `${each.column}_interval_maximum`])],
+    ...uncertain.flatMap((each) => ['standard_uncertainty', 'interval_minimum', 'interval_maximum'].map((end) => `${each.column}_${end}`))],
   curves.flatMap((curve) => curve.x.map((x, row) => [titleOf(curve.fluid), `"${curve.label}"`, x, ...RIG_QUANTITIES.map((each) => rigValue(curve, each, row)),
     ...uncertain.flatMap((each) => {
       const band = rigBand(curve, each, row);
-      return [band?.low ?? null, band?.high ?? null];
+      return [band?.error ?? null, band?.low ?? null, band?.high ?? null];
     })])));
 }
