@@ -8,3 +8,14 @@ export const labelsOf = (text: string): Label[] =>
   });
 
 export const labelText = ({ key, value }: Label): string => (value ? `${key}=${value}` : key!);
+
+/** The filter of a label: "project=axle", or of a key alone: "project". */
+export function filterOfLabel(label: string | null): string | undefined {
+  if (!label) return undefined;
+  const [key, ...value] = label.split('=');
+  return value.length > 0 ? `labels.${key} = ${JSON.stringify(value.join('='))}` : `labels.${key}:*`;
+}
+
+/** Returns true if one of the labels is this one; of a key alone: has this key. */
+export const hasLabel = (labels: Label[] | undefined, label: string): boolean =>
+  (labels ?? []).some((each) => each.key === label || labelText(each) === label);

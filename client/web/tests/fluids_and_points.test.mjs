@@ -113,6 +113,25 @@ test('a running job is followed and cancelled in the list', async () => {
   assert.equal((await server.call('GET', `/v1/${job.name}`)).state, 'CANCELLED');
 });
 
+test('jobs are listed by label', async () => {
+  const of = (label) => server.call('POST', '/v1/simulations', {
+    lubricant: 'lubricants/my-oil', labels: label ? [label] : [],
+    operating_point: { cruise: { speed_kilometres_per_hour: 50 } },
+  });
+  await of();
+  const job = await of({ key: 'series', value: 'winter' });
+  await page.goto(`${server.address}/jobs`);
+  await page.getByRole('link', { name: 'series=winter' }).click();
+  await page.waitForURL(/label=series(=|%3D)winter$/);
+  await page.getByText('Those with the label series=winter').waitFor();
+  await page.waitForFunction(() => document.querySelectorAll('table.jobs tbody tr').length === 1);
+  assert.equal(await page.locator('table.jobs tbody tr td').first().textContent(), job.name.split('/')[1]);
+  const later = await of({ key: 'series', value: 'winter' });
+  await page.getByRole('link', { name: later.name.split('/')[1], exact: true }).waitFor();
+  await page.getByRole('button', { name: 'Show all jobs' }).click();
+  await page.waitForFunction(() => document.querySelectorAll('table.jobs tbody tr').length > 2);
+});
+
 test('a failed job says why', async () => {
   const job = await server.call('POST', '/v1/simulations', {
     lubricant: 'lubricants/my-oil', deadline_seconds: 0.01,

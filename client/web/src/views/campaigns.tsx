@@ -9,6 +9,7 @@ import { MARKERS } from '../charts/spec';
 import { Entry } from '../components/entry';
 import { Missing } from '../components/missing';
 import { Failure, Notice } from '../components/notice';
+import { Labels } from '../components/labels';
 import { Num } from '../components/num';
 import { Swatch } from '../components/swatch';
 import { Validity } from '../components/validity';
@@ -16,7 +17,7 @@ import { TakeAway } from '../components/take_away';
 import { shortTitle } from '../curve';
 import { ago, idOf, revisionIdOf, rounded } from '../format';
 import { titlesOf, useLoaded, useLubricants } from '../resources';
-import { labelText } from '../labels';
+import { filterOfLabel } from '../labels';
 import { address, place, set } from '../router';
 import { useStore } from '../store';
 import { readNumber, shown, sumpText, units, written } from '../units';
@@ -87,28 +88,9 @@ function Actions({ campaign, onChange, onFailure }: { campaign: Campaign; onChan
   );
 }
 
-/** The labels of a campaign; each leads to the campaigns that have it. */
-function Labels({ campaign }: { campaign: Campaign }) {
-  if ((campaign.labels ?? []).length === 0) return null;
-  return (
-    <ul class="labels" aria-label="Labels">
-      {campaign.labels!.map((each) => (
-        <li key={each.key}><a href={address('/campaigns', { label: labelText(each) })}>{labelText(each)}</a></li>
-      ))}
-    </ul>
-  );
-}
-
-/** The filter of a label: "project=axle", or of a key alone: "project". */
-function filterOf(label: string | null): string | undefined {
-  if (!label) return undefined;
-  const [key, ...value] = label.split('=');
-  return value.length > 0 ? `labels.${key} = ${JSON.stringify(value.join('='))}` : `labels.${key}:*`;
-}
-
 function CampaignList() {
   const label = useStore(place).query.get('label');
-  const filter = filterOf(label);
+  const filter = filterOfLabel(label);
   const list = useLoaded(async (signal) =>
     (await get<ListCampaignsResponse>(url('campaigns', { page_size: PAGE, read_mask: LISTED, filter }), signal)).campaigns ?? [], `campaigns ${filter}`);
   const titles = titlesOf(useLubricants().value);
@@ -150,7 +132,7 @@ function CampaignList() {
             <tbody>
               {campaigns.map((each) => (
                 <tr key={each.name}>
-                  <td><a href={address(`/campaigns/${idOf(each.name)}`)}>{each.display_name || `Campaign ${idOf(each.name)}`}</a><small>{idOf(each.name)}</small><Labels campaign={each} /></td>
+                  <td><a href={address(`/campaigns/${idOf(each.name)}`)}>{each.display_name || `Campaign ${idOf(each.name)}`}</a><small>{idOf(each.name)}</small><Labels of="campaigns" labels={each.labels} /></td>
                   <td>{shortTitle(titles.get(idOf(each.lubricant)) ?? idOf(each.lubricant))}</td>
                   <td class="number">{each.candidates}</td>
                   <td class="number">{conditionsOf(each)}{each.rig && <small>of a rig</small>}</td>
@@ -220,7 +202,7 @@ function CampaignPage({ name }: { name: string }) {
             {campaign.rig ? `rig, ${campaign.surface_revision ? revisionIdOf(campaign.surface_revision) : 'smooth specimens'}`
               : `${revisionIdOf(campaign.gear_set_revision)}, ${revisionIdOf(campaign.surface_revision)}, ${revisionIdOf(campaign.vehicle_revision)}`}
           </p>
-          <Labels campaign={campaign} />
+          <Labels of="campaigns" labels={campaign.labels} />
         </div>
         <div class="actions">
           <Actions campaign={campaign} onChange={keep} onFailure={setProblem} />

@@ -3,12 +3,14 @@ import { change, get, session, url } from '../api/client';
 import { watch } from '../api/events';
 import type { Assumption, ListSimulationsResponse, Simulation } from '../api/types';
 import { JobState } from '../components/job_state';
+import { Labels } from '../components/labels';
 import { Missing } from '../components/missing';
 import { Failure, Notice } from '../components/notice';
 import { Validity } from '../components/validity';
 import { remarksOnce } from '../validity';
 import { INPUT_FIELDS, readSimulation, shortTitle } from '../curve';
 import { ago, duration, idOf, revisionIdOf } from '../format';
+import { filterOfLabel, hasLabel } from '../labels';
 import { PROVENANCE } from '../provenance';
 import { inputsOf } from '../request';
 import { titlesOf, useLoaded, useLubricants } from '../resources';
@@ -21,8 +23,8 @@ const PAGE = 100;
 const STATES = ['', 'RUNNING', 'QUEUED', 'SUCCEEDED', 'FAILED', 'CANCELLED'];
 const ENDED = ['SUCCEEDED', 'FAILED', 'CANCELLED'];
 
-/** The newest jobs in a state, followed while they are shown. */
-function useJobList(state: string): { jobs: Simulation[] | undefined; error: unknown; reload: () => void } {
+/** The newest jobs in a state and with a label, followed while they are shown. */
+function useJobList(state: string, label: string | null): { jobs: Simulation[] | undefined; error: unknown; reload: () => void } {
   const who = useStore(session);
   const [jobs, setJobs] = useState<Simulation[] | undefined>();
   const [error, setError] = useState<unknown>();
@@ -31,7 +33,8 @@ function useJobList(state: string): { jobs: Simulation[] | undefined; error: unk
     if (!who) return;
     let isCurrent = true;
     let stream: { close: () => void } | undefined;
-    const filter = state === '' ? undefined : `state = ${state}`;
+    const filter = [state && `state = ${state}`, filterOfLabel(label)].filter(Boolean).join(' AND ') || undefined;
+    const isListed = (job: Simulation) => (state === '' || job.state === state) && (!label || hasLabel(job.labels, label));
     const load = () => get<ListSimulationsResponse>(url('simulations', { page_size: PAGE, filter, read_mask: INPUT_FIELDS }));
     load().then((page) => {
       if (!isCurrent) return;
@@ -44,7 +47,7 @@ function useJobList(state: string): { jobs: Simulation[] | undefined; error: unk
           if (event.kind === 'DELETED') return old.filter((each) => each.name !== event.name);
           if (!old.some((each) => each.name === event.name)) {
             void readSimulation(event.name!).then((simulation) =>
-              setJobs((now) => (now && !now.some((each) => each.name === simulation.name) && (state === '' || simulation.state === state) ? [simulation, ...now] : now)));
+              setJobs((now) => (now && !now.some((each) => each.name === simulation.name) && isListed(simulation) ? [simulation, ...now] : now)));
             return old;
           }
           return old.map((each) => (each.name !== event.name ? each : {
@@ -59,7 +62,7 @@ function useJobList(state: string): { jobs: Simulation[] | undefined; error: unk
       isCurrent = false;
       stream?.close();
     };
-  }, [state, who, round]);
+  }, [state, label, who, round]);
   return { jobs, error, reload: () => setRound((count) => count + 1) };
 }
 
@@ -67,11 +70,11 @@ export function Jobs() {
   const { path, query } = useStore(place);
   const id = path.split('/')[2];
   if (id) return <JobPage key={id} name={`simulations/${id}`} />;
-  return <JobList state={(query.get('state') ?? '').toUpperCase()} />;
+  return <JobList state={(query.get('state') ?? '').toUpperCase()} label={query.get('label')} />;
 }
 
-function JobList({ state }: { state: string }) {
-  const { jobs, error, reload } = useJobList(state);
+function JobList({ state, label }: { state: string; label: string | null }) {
+  const { jobs, error, reload } = useJobList(state, label);
   const titles = titlesOf(useLubricants().value);
   const [problem, setProblem] = useState<unknown>(null);
   const cancel = (job: Simulation) => change('POST', `${url(job.name!)}:cancel`, {}).catch(setProblem);
@@ -85,6 +88,7 @@ function JobList({ state }: { state: string }) {
           </button>
         ))}
       </div>
+      {label && <p class="choices">Those with the label {label} <button onClick={() => set({ label: undefined })}>Show all jobs</button></p>}
       {error !== undefined && <Failure error={error} onRetry={reload} />}
       {problem !== null && <Failure error={problem} />}
       {jobs?.length === 0 && <p class="muted">No job is in this list.</p>}
@@ -97,7 +101,7 @@ function JobList({ state }: { state: string }) {
                 <tr key={job.name}>
                   <td><a href={address(`/jobs/${idOf(job.name)}`)}>{idOf(job.name)}</a></td>
                   <td>{shortTitle(titles.get(idOf(job.lubricant)) ?? idOf(job.lubricant))}</td>
-                  <td>{job.display_name && <strong>{job.display_name}: </strong>}{subject(job)}{job.state === 'FAILED' && <small class="problem">{job.error?.message}</small>}</td>
+                  <td>{job.display_name && <strong>{job.display_name}: </strong>}{subject(job)}{job.state === 'FAILED' && <small class="problem">{job.error?.message}</small>}<Labels of="jobs" labels={job.labels} /></td>
                   <td class="number">{sumpText(job.sump_temperature_celsius)}</td>
                   <td><JobState simulation={job} /></td>
                   <td class="number">{job.cache_hit ? 'stored' : duration(job.start_time, job.end_time)}</td>
