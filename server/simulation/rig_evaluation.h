@@ -54,8 +54,8 @@ double rig_condition_count(const v1::EvaluateRigRequest& request);
 std::vector<v1::RigCondition> rig_conditions(const v1::EvaluateRigRequest& request);
 
 /// Computes all conditions, with the uncertainty of their figures if the request has draws. A
-/// condition that the core refuses is a refused row. Throws Cancelled
-/// soon after `is_over` returns true.
+/// condition that the core refuses is a refused row. Throws Cancelled soon after `is_over` returns
+/// true.
 v1::EvaluateRigResponse evaluate_rig(const v1::EvaluateRigRequest& request,
                                      const RigEvaluation& evaluation,
                                      const std::function<bool()>& is_over);

@@ -241,7 +241,8 @@ class Store {
   std::vector<CampaignSuspect> campaign_suspects(std::int64_t id);
   void begin_suspect(std::int64_t id, const RowRange& rows);
   void end_suspects(std::int64_t id);
-  /// `between_columns` is called while nothing is locked, several times if the tile is large.
+  /// Calls `between_columns`, if there is one, before it compresses each column, while nothing is
+  /// locked.
   std::optional<StoredCampaign> add_tile(std::int64_t id, const NewTile& tile, Microseconds now,
                                          const std::function<void()>& between_columns = {});
   std::optional<CampaignProgress> campaign_progress(std::int64_t id, std::int64_t first_missing_row,

@@ -24,8 +24,8 @@ using ExternalConnections = grpc::experimental::ExternalConnectionAcceptor;
 constexpr std::size_t kGrpcBytes = 2 * kMaximumRequestBytes + (32 << 20);
 constexpr int kMaximumStreamsPerConnection = 1000;
 constexpr std::size_t kMaximumOpenStreams = 10'000;
-/// Calls on a connection beyond which it is closed: twice as many as a client may open that obeys
-/// the limit above, whose calls end some time before gRPC counts them as ended.
+/// Calls on a connection beyond which it is closed. Twice the limit above, because gRPC counts a
+/// call for some time after it has ended, when its client may have begun the next one.
 constexpr long kMaximumCallsPerConnection = 2 * kMaximumStreamsPerConnection;
 /// Calls on all connections, those included whose requests have not arrived: twice as many as
 /// streams may be open. gRPC keeps about 12 kB for each.
