@@ -101,6 +101,7 @@ test('a link reproduces the cycle that was dropped, and a cycle that is too long
   await page.locator('.drop input').setInputFiles(file(`time;v [km/h]\n${rows.map((row) => row.join(';').replaceAll('.', ',')).join('\n')}\n`));
   await page.getByRole('heading', { name: 'over “my cycle.csv”' }).waitFor();
   await page.waitForURL(/#cycle=/);
+  await page.waitForFunction(() => !document.querySelector('.stale'));
   const loss = () => total().locator('[data-value]').first().getAttribute('data-value');
   const expected = await loss();
   await page.getByLabel('Oils after the shear test').check();
