@@ -806,10 +806,10 @@ Command screen_command() {
       {}};
   add_screen_flags(command.flags, *flags);
   command.check = [flags](Complaints& complaints) { check_screen_flags(*flags, complaints); };
-  command.main_flags = {"table",         "--like",    "--speeds", "--sumps",    "--weights",
-                        "--uncertainty", "--pareto",  "--plot",   "--effects",  "--top",
-                        "--csv",         "--surface", "--range",  "--gear-set", "--campaign",
-                        "--lubricants",  "--rig"};
+  command.main_flags = {"table",     "--like",        "--speeds",     "--sumps",
+                        "--weights", "--uncertainty", "--pareto",     "--plot",
+                        "--effects", "--top",         "--csv",        "--surface",
+                        "--range",   "--campaign",    "--lubricants", "--rig"};
   command.run = [flags](const CommonOptions& options) { return run_screen(*flags, options); };
   return command;
 }
