@@ -330,10 +330,11 @@ expect 0 lubricants create sheet-b --kv40 100 --kv100 14.9 --density15 866 --bas
 expect 0 point --lubricant sheet-a --speed 60
 out_has 'inefficiency, energy mean: [0-9.]+ % \+/- 0\.[0-9]+ \(inputs\) \+/- 0\.0[0-9]+ \(solver\)'
 out_has 'measure first: pressure viscosity$|measure first: pressure viscosity coefficient'
-expect 0 traction sheet-a --draws 49 --plot "$folder/bands.svg"
+expect 0 traction sheet-a paper-fluid-1 --draws 49 --plot "$folder/bands.svg"
 out_has '\+/-'
 out_has 'from 49 draws'
-out_has 'Taken as exact, because no uncertainty is stated, of sheet-a@1: '
+out_has 'paper-fluid-1@1: no stated uncertainty of an input moves the traction coefficient'
+out_lacks 'Taken as exact.*: \.$'
 grep -q 'Bands: 95 % intervals' "$folder/bands.svg" || fail "traction draws no bands"
 expect 0 film sheet-a --output csv
 out_has ',central_film_thickness_metres_standard_uncertainty,'

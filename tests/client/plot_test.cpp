@@ -235,6 +235,10 @@ TEST(RigText, StatesUncertaintiesAndWhatCountsAsExact) {
   EXPECT_NE(table.find("from 199 draws"), std::string::npos) << table;
   EXPECT_NE(table.find("refuses draws in 1 rows"), std::string::npos) << table;
   EXPECT_NE(table.find("Taken as exact"), std::string::npos) << table;
+  draws.exact_inputs["lubricants/x@1"].clear();
+  EXPECT_EQ(rig_text(rows, kStribeck, OutputFormat::kTable, draws).find("Taken as exact"),
+            std::string::npos);
+  draws.exact_inputs["lubricants/x@1"] = {"lubricant.relaxation_time_seconds"};
   const std::string csv = rig_text(rows, kStribeck, OutputFormat::kCsv, draws);
   for (const char* header :
        {"traction_coefficient_standard_uncertainty,traction_coefficient_interval_minimum,"

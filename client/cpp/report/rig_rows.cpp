@@ -181,6 +181,7 @@ std::string draws_summary(const std::vector<RigRow>& rows, const RigView& view,
     const std::string id = fluid.substr(fluid.find('/') + 1);
     std::vector<std::string> names;
     for (const std::string& input : inputs) names.push_back(input_text(input));
+    if (uncertain.contains(fluid) && names.empty()) continue;
     sheet.remark(uncertain.contains(fluid)
                      ? "Taken as exact, because no uncertainty is stated, of " + id + ": " +
                            joined(names, ", ") + "."
