@@ -1,7 +1,6 @@
 #include "server/execution/executor.h"
 
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -18,9 +17,6 @@ constexpr auto kProgressInterval = std::chrono::milliseconds(250);
 /// Least interval of Scheduler::extend. A call takes a microsecond.
 constexpr auto kExtendInterval = std::chrono::milliseconds(5);
 constexpr double kLeastFraction = 0.01;  // below it the estimate of the remaining time is too rough
-/// What is added to the nice value of threads that compute, so that those which answer calls and
-/// write to the database wake at once beside as many of them as there are processors.
-constexpr int kComputingNiceness = 5;
 
 }  // namespace
 
@@ -156,8 +152,6 @@ void Executor::run_simulation(Lease lease, bool may_lend) {
 }
 
 void Executor::compute_all() {
-  // On Linux nice() changes the calling thread alone.
-  static_cast<void>(nice(kComputingNiceness));
   while (scheduler_.wait_for_work()) {
     try {
       if (auto lease = scheduler_.claim(LeaseTerms::kLocalWorker)) run(std::move(*lease), true);
