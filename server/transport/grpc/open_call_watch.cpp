@@ -17,6 +17,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -40,6 +41,7 @@ struct Peer {
 };
 
 struct OpenConnection {
+  std::intptr_t socket = 0;  ///< its number in the statistics, which no other connection has
   Peer peer;
   long calls = 0;
 };
@@ -62,7 +64,8 @@ std::optional<OpenConnection> connection_of(std::intptr_t socket) {
   const Statistics::json_pointer remote("/socket/remote/tcpip_address"), data("/socket/data");
   if (!all.is_object() || !all.contains(remote) || !all.contains(data)) return std::nullopt;
   const Statistics& counts = all[data];
-  return OpenConnection{{all[remote].value("ip_address", ""), all[remote].value("port", 0)},
+  return OpenConnection{socket,
+                        {all[remote].value("ip_address", ""), all[remote].value("port", 0)},
                         count_of(counts, "streamsStarted") - count_of(counts, "streamsSucceeded") -
                             count_of(counts, "streamsFailed")};
 }
@@ -130,9 +133,11 @@ std::optional<Peer> peer_of(int descriptor) {
   return Peer{is_mapped ? base64(bytes + 12, 4) : base64(bytes, 16), ntohs(ip6.sin6_port)};
 }
 
-/// Shuts the sockets of these peers down; gRPC then ends their calls and closes them. It keeps its
-/// descriptors to itself, so that they are looked for among those of the process.
-void shut_down(const std::vector<OpenConnection>& connections) {
+/// Shuts these connections down; gRPC then ends their calls and closes them. It keeps its
+/// descriptors to itself, so that they are looked for among those of the process. Returns the
+/// numbers, in the statistics, of those found.
+std::unordered_set<std::intptr_t> shut_down(const std::vector<OpenConnection>& connections) {
+  std::unordered_set<std::intptr_t> done;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
     const int descriptor = std::stoi(entry.path().filename().string());
     const auto peer = peer_of(descriptor);
@@ -143,7 +148,9 @@ void shut_down(const std::vector<OpenConnection>& connections) {
     spdlog::warn("event=connection_closed port={} calls={} cause=\"too many open calls\"",
                  found->peer.port, found->calls);
     shutdown(descriptor, SHUT_RDWR);
+    done.insert(found->socket);
   }
+  return done;
 }
 
 }  // namespace
@@ -178,9 +185,16 @@ void OpenCallWatch::run() {
   }
 }
 
-/// Closes the connections that are beyond the limits.
-void OpenCallWatch::look() const {
+/// Closes the connections that are beyond the limits. gRPC ends the calls of a closed connection
+/// one after the other; a look that counted the rest of them would close a further connection.
+void OpenCallWatch::look() {
   std::vector<OpenConnection> connections = tcp_connections();
+  std::unordered_set<std::intptr_t> still_closing;
+  std::erase_if(connections, [&](const OpenConnection& each) {
+    if (!closing_.contains(each.socket)) return false;
+    still_closing.insert(each.socket);
+    return true;
+  });
   std::sort(connections.begin(), connections.end(),
             [](const OpenConnection& one, const OpenConnection& other) {
               return one.calls > other.calls;
@@ -194,7 +208,8 @@ void OpenCallWatch::look() const {
     open -= calls;
   }
   connections.resize(closed);
-  if (!connections.empty()) shut_down(connections);
+  closing_ = std::move(still_closing);
+  if (!connections.empty()) closing_.merge(shut_down(connections));
 }
 
 }  // namespace tribodyn::server

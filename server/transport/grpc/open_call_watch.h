@@ -1,8 +1,10 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <thread>
+#include <unordered_set>
 
 namespace tribodyn::server {
 
@@ -27,12 +29,14 @@ class OpenCallWatch {
 
  private:
   void run();
-  void look() const;
+  void look();
 
   const Limits limits_;
   std::mutex mutex_;
   std::condition_variable changed_;
   bool is_over_ = false;
+  /// Connections that were closed and whose calls have not ended: their numbers in the statistics.
+  std::unordered_set<std::intptr_t> closing_;
   std::thread thread_;
 };
 
