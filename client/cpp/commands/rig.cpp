@@ -278,7 +278,7 @@ Command rig_command(const RigCommand& rig) {
 constexpr char kSpeedField[] = "entrainment_speed_metres_per_second";
 constexpr char kSlideField[] = "slide_roll_ratio_percent";
 
-RigCommand traction_rig() {
+RigCommand rig_of_traction() {
   return {
       {"traction", "Traction of a ball on a disc", kSlideField, "traction_coefficient",
        "Slide-roll ratio, % of the mean speed", "Traction coefficient", 1, false},
@@ -299,7 +299,7 @@ RigCommand traction_rig() {
       "0 to 50"};
 }
 
-RigCommand film_rig() {
+RigCommand rig_of_film() {
   return {{"film", "Film of a ball on a disc", kSpeedField, "central_film_thickness_metres",
            "Entrainment speed, m/s", "Central film thickness, nm", 1e9, true},
           "film of a ball on a disc against speed",
@@ -319,7 +319,7 @@ RigCommand film_rig() {
           "0"};
 }
 
-RigCommand stribeck_rig() {
+RigCommand rig_of_stribeck() {
   return {{"stribeck", "Stribeck curve of a ball on a disc", kSpeedField, "traction_coefficient",
            "Entrainment speed, m/s", "Friction coefficient", 1, true},
           "friction of a rough ball on a disc against speed",
@@ -352,8 +352,8 @@ void set_disc(const std::string& material, v1::EvaluateRigRequest& request) {
 }
 
 RigMachine rig_machine(const std::string& command) {
-  if (command == "film") return machine_of(film_rig());
-  return machine_of(command == "stribeck" ? stribeck_rig() : traction_rig());
+  if (command == "film") return machine_of(rig_of_film());
+  return machine_of(command == "stribeck" ? rig_of_stribeck() : rig_of_traction());
 }
 
 v1::RigGrid grid_of(const RigSettings& settings) {
@@ -369,8 +369,8 @@ v1::RigGrid grid_of(const RigSettings& settings) {
   return grid;
 }
 
-Command traction_command() { return rig_command(traction_rig()); }
-Command film_command() { return rig_command(film_rig()); }
-Command stribeck_command() { return rig_command(stribeck_rig()); }
+Command traction_command() { return rig_command(rig_of_traction()); }
+Command film_command() { return rig_command(rig_of_film()); }
+Command stribeck_command() { return rig_command(rig_of_stribeck()); }
 
 }  // namespace tribodyn::client

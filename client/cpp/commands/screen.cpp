@@ -799,8 +799,8 @@ Command screen_command() {
        "tribodyn screen --like my-oil --range relaxation-time=0.2us:0.6us --count 128",
        "tribodyn screen --campaign 12 --weights 2,1,1",
        "tribodyn screen candidates.csv --like my-oil --rig traction --load 35 --srr 5,20,50",
-       "tribodyn screen candidates.csv --like my-oil --rig stribeck --pareto "
-       "12/inefficiency_energy_mean_percent"},
+       std::string("tribodyn screen candidates.csv --like my-oil --rig stribeck --pareto ") +
+           "12/inefficiency_energy_mean_percent"},
       {},
       {},
       {}};

@@ -10,7 +10,7 @@ namespace tribodyn::client {
 namespace {
 
 std::string figure_text(const v1::CandidateFigure& figure) {
-  const std::string column =
+  std::string column =
       figure.column() + (figure.campaign().empty() ? "" : " of " + figure.campaign());
   switch (figure.aggregate()) {
     case v1::CandidateFigure::MINIMUM:
