@@ -6,7 +6,7 @@
 # Sources with options of their own are compiled alone, and so are those that UNITY_BUILD (of a
 # target) or SKIP_UNITY_BUILD_INCLUSION (of a source) excludes.
 
-set(TRIBODYN_UNIFIED_SOURCES 12 CACHE STRING "Number of sources compiled together; 1: each alone")
+set(TRIBODYN_UNIFIED_SOURCES 24 CACHE STRING "Number of sources compiled together; 1: each alone")
 
 function(tribodyn_unify_target target)
   get_target_property(unity ${target} UNITY_BUILD)
