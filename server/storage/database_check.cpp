@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "server/contract/resource_names.h"
-#include "server/storage/campaign_rows.h"
+#include "server/storage/campaign_tiles.h"
 #include "server/storage/checksum.h"
 #include "server/storage/history_rows.h"
 #include "server/storage/properties.h"

@@ -286,15 +286,21 @@ class Store {
   template <class Change>
   bool change(const CallLimits& limits, const StoredResource& present, const Change& change);
   /// Runs a change in one transaction, and rolls it back if it returns no event.
-  template <class Change>
-  std::optional<StoredEvent> change_simulation(const CallLimits& limits, const Change& change);
+  std::optional<StoredEvent> change_simulation(
+      const CallLimits& limits,
+      const std::function<std::optional<StoredEvent>(Connection&)>& change);
+  /// Runs an action on the writer's connection, with no other write beside it, and returns what the
+  /// action returns.
   template <class Action>
   auto write(const CallLimits& limits, const Action& action);
+  void run_write(const CallLimits& limits, const GroupCommit::Action& action);
   /// Runs an action in a transaction that it may share with others.
   void write_together(const CallLimits& limits, const GroupCommit::Action& action);
   void tell_campaign_change();
+  /// Runs an action on a connection of a reader, and returns what the action returns.
   template <class Action>
   auto read(const CallLimits& limits, const Action& action);
+  void run_read(const CallLimits& limits, const GroupCommit::Action& action);
 
   const std::filesystem::path path_;
   DatabaseLock lock_;

@@ -17,6 +17,7 @@
 #include "server/application/simulations.h"
 #include "server/simulation/campaign_columns.h"
 #include "server/simulation/campaign_inputs.h"
+#include "server/storage/campaign_suspects.h"
 #include "server/storage/maintenance.h"
 #include "tests/service/campaign_fixture.h"
 #include "tests/service/support.h"
