@@ -170,12 +170,9 @@ class Scheduler {
     SteadyTime begin;
   };
 
-  template <class Action>
-  auto retry_on_store_error(std::int64_t id, const StopSignal& stop, const Action& action) const;
   /// Runs the action and marks the simulation FAILED if it throws. Returns false if the store
   /// cannot be written.
-  template <class Action>
-  bool run_or_fail(const Lease& lease, const Action& action);
+  bool run_or_fail(const Lease& lease, const std::function<void()>& action);
   std::optional<Lease> lease_of(const QueuedJob& job, const std::string& worker,
                                 const std::string& platform);
   std::optional<Lease> start(const Known& known, Lease lease, const std::string& worker,
