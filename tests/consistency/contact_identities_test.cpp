@@ -25,7 +25,7 @@ constexpr double kResidual = 1e-12;
 using Residuals = std::map<std::string, double>;
 
 double asperity_function(double order, double film_ratio, const AsPublished& as_published) {
-  if (!as_published.eq43_44_polynomials) return yardstick::AsperityIntegral(order, film_ratio);
+  if (!as_published.eq43_44_polynomials) return yardstick::asperity_integral(order, film_ratio);
   const double l = film_ratio;
   return order == 2 ? -0.0018 * std::pow(l, 5) + 0.0281 * std::pow(l, 4) - 0.1728 * std::pow(l, 3) +
                           0.5258 * l * l - 0.8043 * l + 0.5003

@@ -78,7 +78,7 @@ ContactSolution expect_yardstick(const ContactCase& c, double tolerance = 1e-9) 
   if (!in_reach) return s;
   const ContactConditions& k = c.conditions;
   const yardstick::ContactResult y =
-      yardstick_of(c).Evaluate({k.load, k.radius_x, k.radius_y, k.velocity_1_x, k.velocity_1_y,
+      yardstick_of(c).evaluate({k.load, k.radius_x, k.radius_y, k.velocity_1_x, k.velocity_1_y,
                                 k.velocity_2_x, k.velocity_2_y});
   const auto expect = [tolerance](const char* name, double ours, double theirs) {
     EXPECT_LE(difference(ours, theirs), tolerance) << name << " " << ours << " " << theirs;

@@ -222,9 +222,9 @@ class OrderTest : public testing::Test {
   /// CVODE from the same start over the same cycles.
   void expect_yardstick_agrees(const InitialValueProblem& problem) const {
     namespace ys = yardstick;
-    const nlohmann::json file = ys::ReadJsonFile(test_data_file("reference_gear_set.json"));
-    const nlohmann::json worked = ys::ReadJsonFile(test_data_file("worked_points.json"));
-    ys::GearPairParameters gear_pair = ys::ReadGearPair(file);
+    const nlohmann::json file = ys::read_json_file(test_data_file("reference_gear_set.json"));
+    const nlohmann::json worked = ys::read_json_file(test_data_file("worked_points.json"));
+    ys::GearPairParameters gear_pair = ys::read_gear_pair(file);
     for (ys::SlotTable* table : {&gear_pair.load_share, &gear_pair.radius_x, &gear_pair.radius_y,
                                  &gear_pair.pinion_velocity_x, &gear_pair.pinion_velocity_y,
                                  &gear_pair.gear_velocity_x, &gear_pair.gear_velocity_y}) {
@@ -236,8 +236,9 @@ class OrderTest : public testing::Test {
         }
       }
     }
-    const ys::GearPairSystem system(gear_pair, ys::ReadVehicle(file),
-                                    ys::ReadOrbitFriction(worked.at("orbit_inputs").at("values")));
+    const ys::GearPairSystem system(
+        gear_pair, ys::read_vehicle(file),
+        ys::read_orbit_friction(worked.at("orbit_inputs").at("values")));
     const SectionState s = start(problem);
     ys::SectionState section{s.pinion_shaft_twist, s.gear_shaft_twist, s.pinion_shaft_speed,
                              s.pinion_speed,       s.gear_speed,       s.wheel_speed,
@@ -245,7 +246,7 @@ class OrderTest : public testing::Test {
     double time = 0, work = 0;
     for (int cycle = 0; cycle < problem.mesh_cycles; ++cycle) {
       const ys::MeshCycle done =
-          ys::IntegrateMeshCycle(system, section, problem.pinion_torque, wheel_torque(problem));
+          ys::integrate_mesh_cycle(system, section, problem.pinion_torque, wheel_torque(problem));
       const double turned = 2 * std::numbers::pi / scene_.gear_set.pinion_teeth +
                             done.end.pinion_shaft_twist - section.pinion_shaft_twist;
       work += done.energy_mean_inefficiency / 100 * problem.pinion_torque * turned;

@@ -173,7 +173,7 @@ TEST(Rig, AgreesWithTheYardstick) {
           for (const double slide : {-1.5, -0.05, 0.001, 0.3}) {
             const double speed = 1.2;
             const RigPoint p = rig.at({load, speed, slide});
-            const yardstick::ContactResult y = theirs.Evaluate(
+            const yardstick::ContactResult y = theirs.evaluate(
                 {load, 0.0127, 0.05, speed * (1 + slide / 2), 0, speed * (1 - slide / 2), 0});
             const double creep = speed * std::abs(slide) / (speed * std::abs(slide) + 1e-4);
             const double friction = y.viscous_friction + creep * y.boundary_friction;

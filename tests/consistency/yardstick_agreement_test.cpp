@@ -44,17 +44,17 @@ TEST_P(YardstickAgreement, TransmissionErrorAndInefficiency) {
   ASSERT_TRUE(ours.settled);
   ASSERT_EQ(ours.pinion_torque < 0, place.ascent_angle < 0 || place.acceleration < 0);
 
-  const auto worked = yardstick::ReadJsonFile(test_data_file("worked_points.json"));
-  const auto gear = yardstick::ReadJsonFile(test_data_file("reference_gear_set.json"));
+  const auto worked = yardstick::read_json_file(test_data_file("worked_points.json"));
+  const auto gear = yardstick::read_json_file(test_data_file("reference_gear_set.json"));
   yardstick::FrictionOptions friction;
   friction.isothermal = place.isothermal;
   friction.newtonian = place.newtonian;
-  yardstick::VehicleParameters vehicle = yardstick::ReadVehicle(gear);
+  yardstick::VehicleParameters vehicle = yardstick::read_vehicle(gear);
   vehicle.ascent_angle = place.ascent_angle;
   vehicle.acceleration = place.acceleration;
   const yardstick::GearPairSystem system(
-      yardstick::ReadGearPair(gear), vehicle,
-      yardstick::ReadOrbitFriction(worked.at("orbit_inputs").at("values"), friction),
+      yardstick::read_gear_pair(gear), vehicle,
+      yardstick::read_orbit_friction(worked.at("orbit_inputs").at("values"), friction),
       yardstick::FrictionArms::kFromVelocities);
   // Our section, 0.1 % off, is only where its own shooting starts: it must find its own orbit.
   yardstick::SectionState start;
@@ -66,7 +66,7 @@ TEST_P(YardstickAgreement, TransmissionErrorAndInefficiency) {
   start.gear_shaft_speed = 1.001 * ours.section_state.wheel_speed;
   start.advance_with_error = 1.001 * ours.section_state.mesh_deflection;
   const yardstick::Orbit theirs =
-      yardstick::FindPeriodicOrbit(system, start, 0.999 * ours.pinion_torque, speed);
+      yardstick::find_periodic_orbit(system, start, 0.999 * ours.pinion_torque, speed);
   ASSERT_TRUE(theirs.converged) << "mismatch " << theirs.mismatch;
 
   const auto expect_near = [](double a, double b, const char* what) {

@@ -9,7 +9,7 @@ namespace {
 
 using nlohmann::json;
 
-Lubricant ReadLubricant(const json& values) {
+Lubricant read_lubricant(const json& values) {
   Lubricant lubricant;
   lubricant.vogel_prefactor = values.at("eta_ref");
   lubricant.vogel_temperature_parameter = values.at("A1");
@@ -28,16 +28,16 @@ Lubricant ReadLubricant(const json& values) {
   return lubricant;
 }
 
-Solid ReadSolid(const json& values) {
+Solid read_solid(const json& values) {
   return {values.at("E"), values.at("nu"), values.at("k_s"), values.at("rho_s"), values.at("cp_s")};
 }
 
-Surface ReadSurface(const json& roughness, const json& boundary) {
+Surface read_surface(const json& roughness, const json& boundary) {
   return {roughness.at("eta_G"), roughness.at("beta_G"), roughness.at("sigma_G"),
           boundary.at("tau_0"), boundary.at("zeta")};
 }
 
-FourierSeries ReadSeries(const json& series) {
+FourierSeries read_series(const json& series) {
   FourierSeries result;
   result.constant = series.at("c0");
   result.sine = series.at("sin").get<std::array<double, kHarmonics>>();
@@ -47,7 +47,7 @@ FourierSeries ReadSeries(const json& series) {
 
 }  // namespace
 
-json ReadJsonFile(const std::string& path) {
+json read_json_file(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw std::runtime_error("cannot open " + path);
   std::ostringstream stream;
@@ -61,7 +61,7 @@ json ReadJsonFile(const std::string& path) {
   return json::parse(text);
 }
 
-ContactCase ReadContactCase(const json& input, int quadrature_nodes) {
+ContactCase read_contact_case(const json& input, int quadrature_nodes) {
   FrictionOptions options;
   options.isothermal = !input.at("thermal").get<bool>();
   options.newtonian = input.at("rheology") == "newton";
@@ -72,20 +72,20 @@ ContactCase ReadContactCase(const json& input, int quadrature_nodes) {
       !input.at("as_published").empty()) {
     throw std::invalid_argument("the yardstick has no such friction option");
   }
-  const ContactFriction friction(ReadLubricant(input.at("lub")), ReadSolid(input.at("steel")),
-                                 ReadSurface(input.at("rough"), input.at("bound")),
+  const ContactFriction friction(read_lubricant(input.at("lub")), read_solid(input.at("steel")),
+                                 read_surface(input.at("rough"), input.at("bound")),
                                  input.at("T_bath"), input.at("dT_in"), options);
   return {friction,
           {input.at("W"), input.at("Rx"), input.at("Ry"), input.at("u_p"), input.at("v_p"),
            input.at("u_g"), input.at("v_g")}};
 }
 
-ContactFriction ReadOrbitFriction(const json& values, const FrictionOptions& options) {
-  return ContactFriction(ReadLubricant(values), ReadSolid(values), ReadSurface(values, values),
+ContactFriction read_orbit_friction(const json& values, const FrictionOptions& options) {
+  return ContactFriction(read_lubricant(values), read_solid(values), read_surface(values, values),
                          values.at("T_bath"), values.at("dT_in"), options);
 }
 
-GearPairParameters ReadGearPair(const json& gear_set) {
+GearPairParameters read_gear_pair(const json& gear_set) {
   GearPairParameters gear_pair;
   const json& dynamics = gear_set.at("dynamics");
   gear_pair.pinion_teeth = gear_set.at("blank_geometry").at("N_p");
@@ -101,10 +101,10 @@ GearPairParameters ReadGearPair(const json& gear_set) {
   gear_pair.mesh_damping = dynamics.at("c_mesh");
   gear_pair.half_backlash = dynamics.at("b");
   const json& fourier = gear_set.at("fourier");
-  gear_pair.pinion_contact_radius = ReadSeries(fourier.at("R_p"));
-  gear_pair.gear_contact_radius = ReadSeries(fourier.at("R_g"));
-  gear_pair.mesh_stiffness = ReadSeries(fourier.at("k_m"));
-  gear_pair.static_transmission_error = ReadSeries(fourier.at("e"));
+  gear_pair.pinion_contact_radius = read_series(fourier.at("R_p"));
+  gear_pair.gear_contact_radius = read_series(fourier.at("R_g"));
+  gear_pair.mesh_stiffness = read_series(fourier.at("k_m"));
+  gear_pair.static_transmission_error = read_series(fourier.at("e"));
   const json& tables = gear_set.at("tables");
   gear_pair.load_share = tables.at("load_share").get<SlotTable>();
   gear_pair.radius_x = tables.at("Rx").get<SlotTable>();
@@ -118,7 +118,7 @@ GearPairParameters ReadGearPair(const json& gear_set) {
   return gear_pair;
 }
 
-VehicleParameters ReadVehicle(const json& gear_set) {
+VehicleParameters read_vehicle(const json& gear_set) {
   const json& values = gear_set.at("vehicle");
   VehicleParameters vehicle;
   vehicle.mass = values.at("m_v");
@@ -132,7 +132,7 @@ VehicleParameters ReadVehicle(const json& gear_set) {
   return vehicle;
 }
 
-SectionState ReadSectionState(const json& section_state) {
+SectionState read_section_state(const json& section_state) {
   return {section_state.at("d_phi_sp"), section_state.at("d_phi_gw"), section_state.at("w_s"),
           section_state.at("w_p"),      section_state.at("w_g"),      section_state.at("w_w"),
           section_state.at("y")};

@@ -16,8 +16,8 @@ constexpr double kRoelandsLogarithm = 9.67;   // eq 31
 
 // G_n(l) = int_0^inf t^n exp(-t^2/2 - l t) dt, so that F_n(l) = exp(-l^2/2) G_n(l) / sqrt(2 pi).
 // With t = v^2 the integrand is smooth for half-integer orders too.
-double ScaledAsperityIntegral(double order, double film_parameter) {
-  static const GaussLegendreRule rule = MakeGaussLegendreRule(24);
+double scaled_asperity_integral(double order, double film_parameter) {
+  static const GaussLegendreRule rule = make_gauss_legendre_rule(24);
   // Beyond this v the exponential is below exp(-80).
   const double cut_off =
       std::min(std::pow(160.0, 0.25), std::sqrt(80.0 / std::max(film_parameter, 1e-3)));
@@ -25,7 +25,7 @@ double ScaledAsperityIntegral(double order, double film_parameter) {
     const double t = v * v;
     return 2.0 * std::pow(v, 2.0 * order + 1.0) * std::exp(-0.5 * t * t - film_parameter * t);
   };
-  return Integrate(rule, integrand, 0.0, cut_off, 8);
+  return integrate(rule, integrand, 0.0, cut_off, 8);
 }
 
 // Quintic Hermite table of G_n on [0, 12], from G_n' = -G_(n+1) and G_n'' = G_(n+2).
@@ -34,9 +34,9 @@ class AsperityTable {
   explicit AsperityTable(double order) : order_(order) {
     for (int i = 0; i <= kIntervals; ++i) {
       const double film_parameter = i * kStep;
-      nodes_[i] = {ScaledAsperityIntegral(order, film_parameter),
-                   -kStep * ScaledAsperityIntegral(order + 1.0, film_parameter),
-                   kStep * kStep * ScaledAsperityIntegral(order + 2.0, film_parameter)};
+      nodes_[i] = {scaled_asperity_integral(order, film_parameter),
+                   -kStep * scaled_asperity_integral(order + 1.0, film_parameter),
+                   kStep * kStep * scaled_asperity_integral(order + 2.0, film_parameter)};
     }
   }
 
@@ -44,7 +44,7 @@ class AsperityTable {
     const double gaussian = std::exp(-0.5 * film_parameter * film_parameter) / std::sqrt(2.0 * kPi);
     const double position = film_parameter / kStep;
     if (position >= kIntervals) {
-      return gaussian == 0.0 ? 0.0 : gaussian * ScaledAsperityIntegral(order_, film_parameter);
+      return gaussian == 0.0 ? 0.0 : gaussian * scaled_asperity_integral(order_, film_parameter);
     }
     const int i = static_cast<int>(position);
     const double s = position - i;
@@ -68,24 +68,24 @@ class AsperityTable {
   std::array<std::array<double, 3>, kIntervals + 1> nodes_;
 };
 
-double AsperityAreaFunction(double film_parameter) {  // F_2
+double asperity_area_function(double film_parameter) {  // F_2
   static const AsperityTable table(2.0);
   return table(film_parameter);
 }
 
-double AsperityLoadFunction(double film_parameter) {  // F_5/2
+double asperity_load_function(double film_parameter) {  // F_5/2
   static const AsperityTable table(2.5);
   return table(film_parameter);
 }
 
 // alpha* of eq 33 for Roelands' law with index Z; B = ln eta0 + 9.67. Substituting
 // q = (1 + 5.1e-9 p)^Z - 1 makes the integrand exp(-B q) (1 + q)^(1/Z - 1) / (5.1e-9 Z).
-double ReciprocalAsymptoticCoefficient(double index, double log_viscosity) {
-  static const GaussLegendreRule rule = MakeGaussLegendreRule(24);
+double reciprocal_asymptotic_coefficient(double index, double log_viscosity) {
+  static const GaussLegendreRule rule = make_gauss_legendre_rule(24);
   const auto integrand = [&](double q) {
     return std::exp(-log_viscosity * q + (1.0 / index - 1.0) * std::log1p(q));
   };
-  const double integral = Integrate(rule, integrand, 0.0, 80.0 / log_viscosity, 64);
+  const double integral = integrate(rule, integrand, 0.0, 80.0 / log_viscosity, 64);
   return kRoelandsPressure * index / integral;
 }
 
@@ -95,12 +95,12 @@ struct HertzShape {
 };
 
 // Eqs 21 and 22 (ratio inverted in eq 22); `ratio` = larger radius over smaller.
-HertzShape SimplifiedHertz(double ratio) {
+HertzShape simplified_hertz(double ratio) {
   return {1.0339 * std::pow(ratio, 0.636), 1.0003 + 0.5968 / ratio};
 }
 
 // Exact: ratio = (k^2 E(m) - K(m)) / (K(m) - E(m)), modulus m = sqrt(1 - 1/k^2).
-HertzShape ExactHertz(double ratio) {
+HertzShape exact_hertz(double ratio) {
   if (ratio < 1.0 + 1e-6) return {1.0, kPi / 2.0};
   const auto modulus = [](double k) { return std::sqrt(1.0 - 1.0 / (k * k)); };
   const auto mismatch = [&](double k) {
@@ -108,26 +108,26 @@ HertzShape ExactHertz(double ratio) {
     const double second = std::comp_ellint_2(modulus(k));
     return (k * k * second - first) - ratio * (first - second);
   };
-  const double ellipticity = FindRoot(mismatch, 1.0 + 1e-7, 2.0 * std::sqrt(ratio) * ratio);
+  const double ellipticity = find_root(mismatch, 1.0 + 1e-7, 2.0 * std::sqrt(ratio) * ratio);
   return {ellipticity, std::comp_ellint_2(modulus(ellipticity))};
 }
 
 // (1 - nu^2)/E of eq 13.
-double PlaneCompliance(const Solid& solid) {
+double plane_compliance(const Solid& solid) {
   return (1.0 - solid.poisson_ratio * solid.poisson_ratio) / solid.youngs_modulus;
 }
 
 // Eq 36 written with the velocity components: half length of the ellipse along the motion.
-double ActiveLength(double semi_x, double semi_y, double velocity_x, double velocity_y) {
+double active_length(double semi_x, double semi_y, double velocity_x, double velocity_y) {
   return semi_x * semi_y * std::hypot(velocity_x, velocity_y) /
          std::hypot(semi_y * velocity_x, semi_x * velocity_y);
 }
 
 }  // namespace
 
-double AsperityIntegral(double order, double film_parameter) {
+double asperity_integral(double order, double film_parameter) {
   return std::exp(-0.5 * film_parameter * film_parameter) / std::sqrt(2.0 * kPi) *
-         ScaledAsperityIntegral(order, film_parameter);
+         scaled_asperity_integral(order, film_parameter);
 }
 
 ContactFriction::ContactFriction(const Lubricant& lubricant, const Solid& pinion_solid,
@@ -139,12 +139,12 @@ ContactFriction::ContactFriction(const Lubricant& lubricant, const Solid& pinion
       gear_solid_(gear_solid),
       surface_(surface),
       options_(options),
-      rule_(MakeGaussLegendreRule(options.quadrature_nodes)),
+      rule_(make_gauss_legendre_rule(options.quadrature_nodes)),
       inlet_temperature_(sump_temperature + inlet_temperature_rise),
-      reduced_modulus_(2.0 / (PlaneCompliance(pinion_solid) + PlaneCompliance(gear_solid))),
-      inlet_viscosity_(AmbientViscosity(inlet_temperature_)) {
+      reduced_modulus_(2.0 / (plane_compliance(pinion_solid) + plane_compliance(gear_solid))),
+      inlet_viscosity_(ambient_viscosity(inlet_temperature_)) {
   const double log_viscosity =
-      std::log(AmbientViscosity(lubricant.pressure_viscosity_temperature)) + kRoelandsLogarithm;
+      std::log(ambient_viscosity(lubricant.pressure_viscosity_temperature)) + kRoelandsLogarithm;
   const double inlet_log_viscosity = std::log(inlet_viscosity_) + kRoelandsLogarithm;
   if (!(log_viscosity > 0.0) || !(inlet_log_viscosity > 0.0)) {
     throw std::invalid_argument("ambient viscosity below exp(-9.67) Pa s");
@@ -156,51 +156,51 @@ ContactFriction::ContactFriction(const Lubricant& lubricant, const Solid& pinion
     return;
   }
   const auto mismatch = [&](double index) {
-    return std::log(ReciprocalAsymptoticCoefficient(index, log_viscosity) / alpha);
+    return std::log(reciprocal_asymptotic_coefficient(index, log_viscosity) / alpha);
   };
   if (!(mismatch(0.05) < 0.0 && mismatch(2.0) > 0.0)) {
     throw std::invalid_argument("no pressure-viscosity index reproduces alpha*");
   }
-  pressure_index_ = FindRoot(mismatch, 0.05, 2.0);
-  inlet_alpha_ = ReciprocalAsymptoticCoefficient(pressure_index_, inlet_log_viscosity);
+  pressure_index_ = find_root(mismatch, 0.05, 2.0);
+  inlet_alpha_ = reciprocal_asymptotic_coefficient(pressure_index_, inlet_log_viscosity);
 }
 
-double ContactFriction::AmbientViscosity(double temperature) const {  // eq 34
+double ContactFriction::ambient_viscosity(double temperature) const {  // eq 34
   return lubricant_.vogel_prefactor *
          std::exp(lubricant_.vogel_temperature_parameter /
                   (temperature - lubricant_.vogel_reference_temperature));
 }
 
-double ContactFriction::ShearThinning(double shear_rate, double temperature) const {
+double ContactFriction::shear_thinning(double shear_rate, double temperature) const {
   if (options_.newtonian) return 1.0;
   const auto density = [this](double kelvin) {  // eq 26
     return lubricant_.density_slope * kelvin + lubricant_.density_intercept;
   };
   const double reference = lubricant_.shear_reference_temperature;
-  const double shift = AmbientViscosity(temperature) / AmbientViscosity(reference) * reference /
+  const double shift = ambient_viscosity(temperature) / ambient_viscosity(reference) * reference /
                        temperature * density(reference) / density(temperature);  // eq 25
   const double reduced_rate = lubricant_.relaxation_time * shift * shear_rate;
   return std::pow(1.0 + std::pow(reduced_rate, lubricant_.havriliak_negami_alpha),
                   lubricant_.havriliak_negami_beta);  // eq 24
 }
 
-double ContactFriction::MeanLimitingShearStress(double maximum_pressure) const {
+double ContactFriction::mean_limiting_shear_stress(double maximum_pressure) const {
   return lubricant_.limiting_shear_stress_at_zero_pressure +
          2.0 / 3.0 * lubricant_.limiting_shear_stress_slope * maximum_pressure;
 }
 
-double ContactFriction::MeanShearStress(double maximum_pressure, double shear_rate,
-                                        double temperature, int* switches) const {
+double ContactFriction::mean_shear_stress(double maximum_pressure, double shear_rate,
+                                          double temperature, int* switches) const {
   if (switches != nullptr) *switches = 0;
   if (shear_rate == 0.0) return 0.0;
-  if (std::isinf(shear_rate)) return MeanLimitingShearStress(maximum_pressure);
+  if (std::isinf(shear_rate)) return mean_limiting_shear_stress(maximum_pressure);
 
   const double limit = lubricant_.limiting_shear_stress_at_zero_pressure;
   const double slope = lubricant_.limiting_shear_stress_slope;
   const double index = pressure_index_;
-  const double viscosity = AmbientViscosity(temperature);
+  const double viscosity = ambient_viscosity(temperature);
   const double log_viscosity = std::log(viscosity) + kRoelandsLogarithm;
-  const double ambient_stress = viscosity * shear_rate / ShearThinning(shear_rate, temperature);
+  const double ambient_stress = viscosity * shear_rate / shear_thinning(shear_rate, temperature);
   const auto exponent = [&](double pressure) {  // eq 31
     return log_viscosity * std::expm1(index * std::log1p(kRoelandsPressure * pressure));
   };
@@ -219,29 +219,29 @@ double ContactFriction::MeanShearStress(double maximum_pressure, double shear_ra
   struct Marks {
     std::array<double, 8> pressure;
     int count = 0;
-    void Add(double value) { pressure[count++] = value; }
+    void add(double value) { pressure[count++] = value; }
   };
   const auto insert_roots = [](const Marks& marks, const auto& function) {
     Marks refined;
-    refined.Add(marks.pressure[0]);
+    refined.add(marks.pressure[0]);
     double left_value = function(marks.pressure[0]);
     for (int i = 1; i < marks.count; ++i) {
       const double right_value = function(marks.pressure[i]);
       if (left_value * right_value < 0.0) {
-        refined.Add(
-            FindRoot(function, marks.pressure[i - 1], marks.pressure[i], left_value, right_value));
+        refined.add(
+            find_root(function, marks.pressure[i - 1], marks.pressure[i], left_value, right_value));
       }
-      refined.Add(marks.pressure[i]);
+      refined.add(marks.pressure[i]);
       left_value = right_value;
     }
     return refined;
   };
   Marks marks;
-  marks.Add(0.0);
+  marks.add(0.0);
   const double stationary =
       ((1.0 - index) * kRoelandsPressure * limit - slope) / (slope * kRoelandsPressure * index);
-  if (stationary > 0.0 && stationary < maximum_pressure) marks.Add(stationary);
-  marks.Add(maximum_pressure);
+  if (stationary > 0.0 && stationary < maximum_pressure) marks.add(stationary);
+  marks.add(maximum_pressure);
   const Marks monotone = insert_roots(marks, excess_slope);
   const Marks pieces = insert_roots(monotone, log_excess);
   if (switches != nullptr) *switches = pieces.count - monotone.count;
@@ -255,7 +255,7 @@ double ContactFriction::MeanShearStress(double maximum_pressure, double shear_ra
       mean += limit * (upper * upper - lower * lower) +
               2.0 / 3.0 * slope * (upper * upper * upper - lower * lower * lower);
     } else {
-      mean += 2.0 * Integrate(
+      mean += 2.0 * integrate(
                         rule_,
                         [&](double pressure) {
                           return ambient_stress * std::exp(exponent(pressure)) * pressure;
@@ -266,13 +266,13 @@ double ContactFriction::MeanShearStress(double maximum_pressure, double shear_ra
   return mean / (maximum_pressure * maximum_pressure);
 }
 
-void ContactFriction::SetEllipse(const ContactInput& input, double film_load,
-                                 ContactResult* result) const {
+void ContactFriction::set_ellipse(const ContactInput& input, double film_load,
+                                  ContactResult* result) const {
   const double larger = std::max(input.radius_x, input.radius_y);
   const double smaller = std::min(input.radius_x, input.radius_y);
   const double ratio = larger / smaller;
   const HertzShape shape =
-      options_.elliptic_integral_hertz ? ExactHertz(ratio) : SimplifiedHertz(ratio);
+      options_.elliptic_integral_hertz ? exact_hertz(ratio) : simplified_hertz(ratio);
   const double radius = larger * smaller / (larger + smaller);
   result->semi_major_axis =
       std::cbrt(6.0 * shape.ellipticity * shape.ellipticity * shape.elliptic_integral * film_load *
@@ -282,7 +282,7 @@ void ContactFriction::SetEllipse(const ContactInput& input, double film_load,
   result->maximum_pressure = 1.5 * film_load / result->film_area;  // eq 19
 }
 
-void ContactFriction::ShareLoad(const ContactInput& input, ContactResult* result) const {
+void ContactFriction::share_load(const ContactInput& input, ContactResult* result) const {
   const double u = 0.5 * (input.pinion_velocity_x + input.gear_velocity_x);
   const double v = 0.5 * (input.pinion_velocity_y + input.gear_velocity_y);
   result->entrainment_angle = std::atan2(v, u);
@@ -304,7 +304,7 @@ void ContactFriction::ShareLoad(const ContactInput& input, ContactResult* result
                           std::pow(inlet_alpha_ * reduced_modulus_, 0.49) *
                           std::pow(load_parameter, -0.073) *
                           -std::expm1(-1.23 * std::pow(side_radius / radius, 2.0 / 3.0));  // eq 12
-  SetEllipse(input, input.load, result);
+  set_ellipse(input, input.load, result);
   const double full_load_area = result->film_area;
   if (options_.inlet_shear_heating) {
     // Viscosity falls by A_1/(T - T_0)^2 per kelvin.
@@ -330,7 +330,7 @@ void ContactFriction::ShareLoad(const ContactInput& input, ContactResult* result
   // Unknown: s = ln(W_EHL / W) <= 0.
   const auto asperity_load = [&](double s) {
     return load_factor * full_load_area * std::exp(2.0 / 3.0 * s) *
-           AsperityLoadFunction(full_load_film * std::exp(-0.073 * s) / surface_.roughness);
+           asperity_load_function(full_load_film * std::exp(-0.073 * s) / surface_.roughness);
   };
   const auto imbalance = [&](double s) { return std::expm1(s) + asperity_load(s) / input.load; };
   double share = 0.0;
@@ -341,18 +341,18 @@ void ContactFriction::ShareLoad(const ContactInput& input, ContactResult* result
     lower = std::min(lower, -std::numeric_limits<double>::min());
     double imbalance_at_lower = imbalance(lower);
     while (imbalance_at_lower > 0.0) imbalance_at_lower = imbalance(lower *= 2.0);
-    share = FindRoot(imbalance, lower, 0.0, imbalance_at_lower, largest);
+    share = find_root(imbalance, lower, 0.0, imbalance_at_lower, largest);
   }
   result->film_load = input.load * std::exp(share);
   result->asperity_load = asperity_load(share);
-  SetEllipse(input, result->film_load, result);
+  set_ellipse(input, result->film_load, result);
   result->central_film_thickness = full_load_film * std::exp(-0.073 * share);
   result->film_parameter = result->central_film_thickness / surface_.roughness;
   result->asperity_area = kPi * kPi * result->film_area * asperity_number * asperity_number *
-                          AsperityAreaFunction(result->film_parameter);  // eq 42
+                          asperity_area_function(result->film_parameter);  // eq 42
 }
 
-void ContactFriction::SetThermalNetwork(const ContactInput& input, ContactResult* result) const {
+void ContactFriction::set_thermal_network(const ContactInput& input, ContactResult* result) const {
   const bool major_along_x = input.radius_x > input.radius_y;
   const double semi_x = major_along_x ? result->semi_major_axis : result->semi_minor_axis;
   const double semi_y = major_along_x ? result->semi_minor_axis : result->semi_major_axis;
@@ -362,9 +362,9 @@ void ContactFriction::SetThermalNetwork(const ContactInput& input, ContactResult
            std::sqrt(diffusivity * length / speed);
   };
   result->pinion_active_length =
-      ActiveLength(semi_x, semi_y, input.pinion_velocity_x, input.pinion_velocity_y);
+      active_length(semi_x, semi_y, input.pinion_velocity_x, input.pinion_velocity_y);
   result->gear_active_length =
-      ActiveLength(semi_x, semi_y, input.gear_velocity_x, input.gear_velocity_y);
+      active_length(semi_x, semi_y, input.gear_velocity_x, input.gear_velocity_y);
   result->pinion_thermal_resistance =
       resistance(pinion_solid_, result->pinion_active_length,
                  std::hypot(input.pinion_velocity_x, input.pinion_velocity_y));
@@ -378,7 +378,7 @@ void ContactFriction::SetThermalNetwork(const ContactInput& input, ContactResult
                             2.0 * result->film_thermal_resistance);  // eq 37
 }
 
-void ContactFriction::SolveTemperature(ContactResult* result) const {
+void ContactFriction::solve_temperature(ContactResult* result) const {
   const double p_max = result->maximum_pressure;
   const double sliding = result->sliding_speed;
   const double flash_factor = result->pinion_thermal_resistance * result->heat_partition * sliding;
@@ -395,12 +395,12 @@ void ContactFriction::SolveTemperature(ContactResult* result) const {
     };
     const auto mismatch = [&](double s) {
       return std::log(kelvin_per_pascal *
-                      MeanShearStress(p_max, result->shear_rate, temperature_at(s))) -
+                      mean_shear_stress(p_max, result->shear_rate, temperature_at(s))) -
              s;
     };
     // The limiting stress bounds the rise from above; the stress falls with temperature, so the
     // rise at that bound bounds it from below (the loop covers laws for which it does not fall).
-    const double upper = std::log(kelvin_per_pascal * MeanLimitingShearStress(p_max));
+    const double upper = std::log(kelvin_per_pascal * mean_limiting_shear_stress(p_max));
     const double mismatch_at_upper = mismatch(upper);
     if (mismatch_at_upper >= 0.0) {
       temperature = temperature_at(upper);
@@ -409,11 +409,11 @@ void ContactFriction::SolveTemperature(ContactResult* result) const {
       double mismatch_at_lower = mismatch(lower);
       while (mismatch_at_lower < 0.0) mismatch_at_lower = mismatch(lower -= 0.5);
       temperature =
-          temperature_at(FindRoot(mismatch, lower, upper, mismatch_at_lower, mismatch_at_upper));
+          temperature_at(find_root(mismatch, lower, upper, mismatch_at_lower, mismatch_at_upper));
     }
   }
   result->mean_shear_stress =
-      MeanShearStress(p_max, result->shear_rate, temperature, &result->limiting_stress_switches);
+      mean_shear_stress(p_max, result->shear_rate, temperature, &result->limiting_stress_switches);
   result->viscous_friction =
       (result->film_area - result->asperity_area) * result->mean_shear_stress;  // eq 27
   result->friction = result->viscous_friction + result->boundary_friction;      // eq 28
@@ -425,11 +425,11 @@ void ContactFriction::SolveTemperature(ContactResult* result) const {
   }
 }
 
-ContactResult ContactFriction::Evaluate(const ContactInput& input) const {
+ContactResult ContactFriction::evaluate(const ContactInput& input) const {
   ContactResult result;
   result.temperature = inlet_temperature_;
   if (!(input.load > 0.0)) return result;
-  ShareLoad(input, &result);
+  share_load(input, &result);
   result.sliding_speed = std::hypot(input.pinion_velocity_x - input.gear_velocity_x,
                                     input.pinion_velocity_y - input.gear_velocity_y);
   result.shear_rate =
@@ -437,8 +437,8 @@ ContactResult ContactFriction::Evaluate(const ContactInput& input) const {
   result.boundary_friction =
       surface_.tribofilm_shear_strength * result.asperity_area +
       surface_.boundary_friction_coefficient * result.asperity_load;  // eq 40
-  SetThermalNetwork(input, &result);
-  SolveTemperature(&result);
+  set_thermal_network(input, &result);
+  solve_temperature(&result);
   return result;
 }
 

@@ -107,7 +107,7 @@ struct ContactResult {
 };
 
 /// F_n(l) = (2 pi)^(-1/2) int_l^inf (s - l)^n exp(-s^2/2) ds by direct quadrature; n > -1, l >= 0.
-double AsperityIntegral(double order, double film_parameter);
+double asperity_integral(double order, double film_parameter);
 
 /// Friction of a flank contact for one lubricant, pair of materials, surface and sump temperature.
 class ContactFriction {
@@ -124,7 +124,7 @@ class ContactFriction {
                         options) {}
 
   /// A load of zero or less gives a result of zeros at inlet temperature.
-  ContactResult Evaluate(const ContactInput& input) const;
+  ContactResult evaluate(const ContactInput& input) const;
 
   double inlet_temperature() const { return inlet_temperature_; }  ///< T_in, K
   double inlet_viscosity() const { return inlet_viscosity_; }      ///< eta_0(T_in), Pa s
@@ -135,17 +135,17 @@ class ContactFriction {
 
   /// Mean of min(tau(p), tau_L(p)) over the Hertz ellipse at uniform temperature: eqs 19, 23-27.
   /// `switches`, if not null, receives the number of pressures where tau reaches tau_L.
-  double MeanShearStress(double maximum_pressure, double shear_rate, double temperature,
-                         int* switches = nullptr) const;
+  double mean_shear_stress(double maximum_pressure, double shear_rate, double temperature,
+                           int* switches = nullptr) const;
 
  private:
-  double AmbientViscosity(double temperature) const;
-  double ShearThinning(double shear_rate, double temperature) const;
-  double MeanLimitingShearStress(double maximum_pressure) const;
-  void SetEllipse(const ContactInput& input, double film_load, ContactResult* result) const;
-  void ShareLoad(const ContactInput& input, ContactResult* result) const;
-  void SetThermalNetwork(const ContactInput& input, ContactResult* result) const;
-  void SolveTemperature(ContactResult* result) const;
+  double ambient_viscosity(double temperature) const;
+  double shear_thinning(double shear_rate, double temperature) const;
+  double mean_limiting_shear_stress(double maximum_pressure) const;
+  void set_ellipse(const ContactInput& input, double film_load, ContactResult* result) const;
+  void share_load(const ContactInput& input, ContactResult* result) const;
+  void set_thermal_network(const ContactInput& input, ContactResult* result) const;
+  void solve_temperature(ContactResult* result) const;
 
   Lubricant lubricant_;
   Solid pinion_solid_, gear_solid_;

@@ -5,7 +5,7 @@
 
 namespace tribodyn::yardstick {
 
-GaussLegendreRule MakeGaussLegendreRule(int node_count) {
+GaussLegendreRule make_gauss_legendre_rule(int node_count) {
   GaussLegendreRule rule{std::vector<double>(node_count), std::vector<double>(node_count)};
   for (int node = 0; node < node_count; ++node) {
     double x = std::cos(std::numbers::pi * (node + 0.75) / (node_count + 0.5));
@@ -29,8 +29,8 @@ GaussLegendreRule MakeGaussLegendreRule(int node_count) {
   return rule;
 }
 
-std::vector<double> SolveLinearSystem(std::vector<std::vector<double>> matrix,
-                                      std::vector<double> right_side) {
+std::vector<double> solve_linear_system(std::vector<std::vector<double>> matrix,
+                                        std::vector<double> right_side) {
   const std::size_t size = right_side.size();
   for (std::size_t column = 0; column < size; ++column) {
     std::size_t pivot = column;

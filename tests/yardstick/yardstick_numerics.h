@@ -17,11 +17,11 @@ struct GaussLegendreRule {
 };
 
 /// Nodes by Newton's method on the Legendre polynomial of degree `node_count`.
-GaussLegendreRule MakeGaussLegendreRule(int node_count);
+GaussLegendreRule make_gauss_legendre_rule(int node_count);
 
 /// Integral of `function` over [lower, upper], cut into `panel_count` equal panels.
 template <typename Function>
-double Integrate(const GaussLegendreRule& rule, const Function& function, double lower,
+double integrate(const GaussLegendreRule& rule, const Function& function, double lower,
                  double upper, int panel_count = 1) {
   const double width = (upper - lower) / panel_count;
   double sum = 0.0;
@@ -38,7 +38,7 @@ double Integrate(const GaussLegendreRule& rule, const Function& function, double
 /// Derivatives, 1973, ch. 4). The end values must differ in sign; an end that is a root is
 /// returned. `value_a` and `value_b` are the function values there.
 template <typename Function>
-double FindRoot(const Function& function, double a, double b, double value_a, double value_b) {
+double find_root(const Function& function, double a, double b, double value_a, double value_b) {
   if (value_a == 0.0) return a;
   if (value_b == 0.0) return b;
   if (!((value_a < 0.0) != (value_b < 0.0))) {
@@ -99,12 +99,12 @@ double FindRoot(const Function& function, double a, double b, double value_a, do
 }
 
 template <typename Function>
-double FindRoot(const Function& function, double a, double b) {
-  return FindRoot(function, a, b, function(a), function(b));
+double find_root(const Function& function, double a, double b) {
+  return find_root(function, a, b, function(a), function(b));
 }
 
 /// Solves `matrix` x = `right_side` by elimination with row pivoting; rows of `matrix` are rows.
-std::vector<double> SolveLinearSystem(std::vector<std::vector<double>> matrix,
-                                      std::vector<double> right_side);
+std::vector<double> solve_linear_system(std::vector<std::vector<double>> matrix,
+                                        std::vector<double> right_side);
 
 }  // namespace tribodyn::yardstick

@@ -29,17 +29,17 @@ enum IntegralIndex {
 constexpr double kSamplesPerCycle = 2000.0;  // least density of the samples for extremes
 
 // Smallest and largest value of a sampled signal, with a parabola through three samples around
-// every interior extremum. Restart() where the signal has a kink or a jump.
+// every interior extremum. restart() where the signal has a kink or a jump.
 class ExtremeTracker {
  public:
-  void Restart() { count_ = 0; }
+  void restart() { count_ = 0; }
 
-  void Add(double time, double value) {
+  void add(double time, double value) {
     if (!std::isfinite(value)) {
-      Restart();
+      restart();
       return;
     }
-    Widen(value);
+    widen(value);
     if (count_ == 3) {
       std::copy(time_.begin() + 1, time_.end(), time_.begin());
       std::copy(value_.begin() + 1, value_.end(), value_.begin());
@@ -56,14 +56,14 @@ class ExtremeTracker {
     const double b = time_[2] - time_[1];
     const double curvature = (left / a - right / b) / (a - b);
     const double slope = left / a - curvature * a;
-    Widen(value_[1] - slope * slope / (4.0 * curvature));
+    widen(value_[1] - slope * slope / (4.0 * curvature));
   }
 
   double minimum() const { return minimum_; }
   double maximum() const { return maximum_; }
 
  private:
-  void Widen(double value) {
+  void widen(double value) {
     minimum_ = std::min(minimum_, value);
     maximum_ = std::max(maximum_, value);
   }
@@ -77,7 +77,7 @@ class ExtremeTracker {
 
 constexpr int kRootCount = 3;  // next table node; x = +-b on the watched side; mesh force
 
-void Check(int flag, const char* call) {
+void check(int flag, const char* call) {
   if (flag < 0) throw std::runtime_error(std::string(call) + " failed: " + std::to_string(flag));
 }
 
@@ -87,23 +87,23 @@ class CycleIntegrator {
   CycleIntegrator(const GearPairSystem& system, const State& start, double input_torque,
                   double resistive_torque, const CycleOptions& options)
       : system_(system), input_torque_(input_torque), resistive_torque_(resistive_torque) {
-    Check(SUNContext_Create(nullptr, &context_), "SUNContext_Create");
+    check(SUNContext_Create(nullptr, &context_), "SUNContext_Create");
     vector_ = N_VNew_Serial(kVectorSize, context_);
     absolute_tolerance_ = N_VNew_Serial(kVectorSize, context_);
-    std::fill_n(Data(vector_), static_cast<int>(kVectorSize), 0.0);
-    std::copy(start.begin(), start.end(), Data(vector_));
-    mode_ = system.ModeOf(start);
-    SetTolerances(start, options.tolerance);
+    std::fill_n(data(vector_), static_cast<int>(kVectorSize), 0.0);
+    std::copy(start.begin(), start.end(), data(vector_));
+    mode_ = system.mode_of(start);
+    set_tolerances(start, options.tolerance);
 
     cvode_ = CVodeCreate(CV_ADAMS, context_);
-    Check(CVodeInit(cvode_, RightHandSide, 0.0, vector_), "CVodeInit");
-    Check(CVodeSVtolerances(cvode_, 0.0, absolute_tolerance_), "CVodeSVtolerances");
-    Check(CVodeSetUserData(cvode_, this), "CVodeSetUserData");
+    check(CVodeInit(cvode_, right_hand_side, 0.0, vector_), "CVodeInit");
+    check(CVodeSVtolerances(cvode_, 0.0, absolute_tolerance_), "CVodeSVtolerances");
+    check(CVodeSetUserData(cvode_, this), "CVodeSetUserData");
     solver_ = SUNNonlinSol_FixedPoint(vector_, 0, context_);
-    Check(CVodeSetNonlinearSolver(cvode_, solver_), "CVodeSetNonlinearSolver");
-    Check(CVodeRootInit(cvode_, kRootCount, RootFunctions), "CVodeRootInit");
-    Check(CVodeSetNoInactiveRootWarn(cvode_), "CVodeSetNoInactiveRootWarn");
-    Check(CVodeSetMaxHnilWarns(cvode_, -1), "CVodeSetMaxHnilWarns");
+    check(CVodeSetNonlinearSolver(cvode_, solver_), "CVodeSetNonlinearSolver");
+    check(CVodeRootInit(cvode_, kRootCount, root_functions), "CVodeRootInit");
+    check(CVodeSetNoInactiveRootWarn(cvode_), "CVodeSetNoInactiveRootWarn");
+    check(CVodeSetMaxHnilWarns(cvode_, -1), "CVodeSetMaxHnilWarns");
     result_.input_torque = input_torque;
     dense_ = N_VNew_Serial(kVectorSize, context_);
   }
@@ -120,49 +120,49 @@ class CycleIntegrator {
   CycleIntegrator(const CycleIntegrator&) = delete;
   CycleIntegrator& operator=(const CycleIntegrator&) = delete;
 
-  MeshCycle Run() {
+  MeshCycle run() {
     double time = 0.0;
     while (interval_ < kIntervals) {
       const double segment_start = time;
-      SetRootDirections();
+      set_root_directions();
       for (ExtremeTracker* tracker : {&error_, &torque_, &temperature_, &film_, &pressure_}) {
-        tracker->Restart();
+        tracker->restart();
       }
-      Record(time, vector_);
+      record(time, vector_);
       bool event = false;
       while (!event) {
         const double step_start = time;
         const int flag = CVode(cvode_, 1.0e9, vector_, &time, CV_ONE_STEP);
-        Check(flag, "CVode");
-        RecordInside(step_start, time);
-        Record(time, vector_);
+        check(flag, "CVode");
+        record_inside(step_start, time);
+        record(time, vector_);
         event = flag == CV_ROOT_RETURN;
-        if (!(Data(vector_)[kPinionSpeed] > 0.0)) throw std::runtime_error("the pinion stops");
+        if (!(data(vector_)[kPinionSpeed] > 0.0)) throw std::runtime_error("the pinion stops");
       }
       if (mode_ == ContactMode::kSeparated) result_.separated_fraction += time - segment_start;
-      PassEvent();
-      Check(CVodeReInit(cvode_, time, vector_), "CVodeReInit");
+      pass_event();
+      check(CVodeReInit(cvode_, time, vector_), "CVodeReInit");
     }
-    Finish(time);
+    finish(time);
     return result_;
   }
 
  private:
-  static double* Data(N_Vector vector) { return N_VGetArrayPointer(vector); }
+  static double* data(N_Vector vector) { return N_VGetArrayPointer(vector); }
 
-  static State StateOf(N_Vector vector) {
+  static State state_of(N_Vector vector) {
     State state;
-    std::copy_n(Data(vector), static_cast<int>(kStateSize), state.begin());
+    std::copy_n(data(vector), static_cast<int>(kStateSize), state.begin());
     return state;
   }
 
-  void SetTolerances(const State& start, double tolerance) {
+  void set_tolerances(const State& start, double tolerance) {
     const double backlash = system_.gear_pair().half_backlash;
     const double shaft_speed = start[kPinionShaftSpeed];
     const double period = 2.0 * std::numbers::pi / system_.gear_pair().pinion_teeth / shaft_speed;
     const double torque = std::max(std::abs(input_torque_), 1.0);
     const double power = 0.01 * torque * shaft_speed;
-    double* scale = Data(absolute_tolerance_);
+    double* scale = data(absolute_tolerance_);
     scale[kPinionShaftTwist] = torque / system_.gear_pair().pinion_shaft_stiffness;
     scale[kPinionAngle] = 0.1;
     scale[kMeshAdvance] = 0.1 * backlash;
@@ -176,17 +176,17 @@ class CycleIntegrator {
     for (int i = 0; i < kVectorSize; ++i) scale[i] *= tolerance;
   }
 
-  Instant EvaluateAt(N_Vector vector) const {
-    return system_.Evaluate(StateOf(vector), interval_, mode_, input_torque_, resistive_torque_);
+  Instant evaluate_at(N_Vector vector) const {
+    return system_.evaluate(state_of(vector), interval_, mode_, input_torque_, resistive_torque_);
   }
 
-  static int RightHandSide(double, N_Vector vector, N_Vector rate, void* user_data) {
+  static int right_hand_side(double, N_Vector vector, N_Vector rate, void* user_data) {
     auto* self = static_cast<CycleIntegrator*>(user_data);
-    const Instant now = self->EvaluateAt(vector);
+    const Instant now = self->evaluate_at(vector);
     // Power comes in at the shaft that drives: at the pinion's in drive, at the wheel's in coast.
-    const double power_in = std::max(self->input_torque_ * Data(vector)[kPinionShaftSpeed], 0.0) +
-                            std::max(-self->resistive_torque_ * Data(vector)[kGearShaftSpeed], 0.0);
-    double* out = Data(rate);
+    const double power_in = std::max(self->input_torque_ * data(vector)[kPinionShaftSpeed], 0.0) +
+                            std::max(-self->resistive_torque_ * data(vector)[kGearShaftSpeed], 0.0);
+    double* out = data(rate);
     std::copy(now.rate.begin(), now.rate.end(), out);
     out[kFrictionEnergy] = now.friction_power;
     out[kSquaredRatio] = std::pow(now.friction_power / power_in, 2);
@@ -198,28 +198,28 @@ class CycleIntegrator {
     return 0;
   }
 
-  bool CoastSide() const {
+  bool coast_side() const {
     return mode_ == ContactMode::kCoastLoaded || mode_ == ContactMode::kCoastUnloaded;
   }
 
-  static int RootFunctions(double, N_Vector vector, double* roots, void* user_data) {
+  static int root_functions(double, N_Vector vector, double* roots, void* user_data) {
     auto* self = static_cast<CycleIntegrator*>(user_data);
     const double backlash = self->system_.gear_pair().half_backlash;
-    const State state = StateOf(vector);
+    const State state = state_of(vector);
     // Friction plays no part here: evaluate in the unloaded mode of the same side.
     ContactMode mode = self->mode_;
     if (mode == ContactMode::kDriveLoaded) mode = ContactMode::kDriveUnloaded;
     if (mode == ContactMode::kCoastLoaded) mode = ContactMode::kCoastUnloaded;
-    const Instant now = self->system_.Evaluate(state, 0, mode, 0.0, 0.0);
+    const Instant now = self->system_.evaluate(state, 0, mode, 0.0, 0.0);
     const double x = now.transmission_error;
-    roots[0] = state[kPinionAngle] - self->system_.PinionAngleAtNode(self->interval_ + 1);
-    roots[1] = self->CoastSide() ? x + backlash : x - backlash;
+    roots[0] = state[kPinionAngle] - self->system_.pinion_angle_at_node(self->interval_ + 1);
+    roots[1] = self->coast_side() ? x + backlash : x - backlash;
     roots[2] = mode == ContactMode::kSeparated ? x + backlash : now.mesh_force;
     return 0;
   }
 
   // Only crossings that leave the present mode count.
-  void SetRootDirections() {
+  void set_root_directions() {
     int directions[kRootCount] = {1, 0, 0};
     switch (mode_) {
       case ContactMode::kDriveLoaded:
@@ -241,12 +241,12 @@ class CycleIntegrator {
         directions[2] = -1;
         break;
     }
-    Check(CVodeSetRootDirection(cvode_, directions), "CVodeSetRootDirection");
+    check(CVodeSetRootDirection(cvode_, directions), "CVodeSetRootDirection");
   }
 
-  void PassEvent() {
+  void pass_event() {
     int roots[kRootCount];
-    Check(CVodeGetRootInfo(cvode_, roots), "CVodeGetRootInfo");
+    check(CVodeGetRootInfo(cvode_, roots), "CVodeGetRootInfo");
     if (roots[1] != 0 || roots[2] != 0) ++result_.mode_changes;
     if (roots[1] != 0) {
       mode_ =
@@ -271,30 +271,30 @@ class CycleIntegrator {
     if (roots[0] != 0) ++interval_;
   }
 
-  void Record(double time, N_Vector vector) {
-    const Instant now = EvaluateAt(vector);
-    error_.Add(time, now.transmission_error);
-    torque_.Add(time, now.pinion_friction_torque);
-    temperature_.Add(time, now.maximum_temperature);
-    film_.Add(time, now.minimum_film_parameter);
-    pressure_.Add(time, now.maximum_pressure);
+  void record(double time, N_Vector vector) {
+    const Instant now = evaluate_at(vector);
+    error_.add(time, now.transmission_error);
+    torque_.add(time, now.pinion_friction_torque);
+    temperature_.add(time, now.maximum_temperature);
+    film_.add(time, now.minimum_film_parameter);
+    pressure_.add(time, now.maximum_pressure);
   }
 
   // Dense output inside the step just taken.
-  void RecordInside(double start, double end) {
+  void record_inside(double start, double end) {
     const double spacing = 2.0 * std::numbers::pi / system_.gear_pair().pinion_teeth /
-                           Data(vector_)[kPinionSpeed] / kSamplesPerCycle;
+                           data(vector_)[kPinionSpeed] / kSamplesPerCycle;
     const int pieces = static_cast<int>(std::ceil((end - start) / spacing));
     for (int piece = 1; piece < pieces; ++piece) {
       const double time = start + (end - start) * piece / pieces;
-      Check(CVodeGetDky(cvode_, time, 0, dense_), "CVodeGetDky");
-      Record(time, dense_);
+      check(CVodeGetDky(cvode_, time, 0, dense_), "CVodeGetDky");
+      record(time, dense_);
     }
   }
 
-  void Finish(double time) {
-    const double* data = Data(vector_);
-    State end = StateOf(vector_);
+  void finish(double time) {
+    const double* components = data(vector_);
+    State end = state_of(vector_);
     end[kPinionAngle] = 0.0;  // u is unchanged: R_p0 / N_p = R_g0 / N_g
     result_.end = {end[kPinionShaftTwist],
                    end[kGearShaftTwist],
@@ -302,15 +302,16 @@ class CycleIntegrator {
                    end[kPinionSpeed],
                    end[kGearSpeed],
                    end[kGearShaftSpeed],
-                   system_.AdvanceWithError(end)};
+                   system_.advance_with_error(end)};
     result_.period = time;
     result_.vehicle_speed = system_.vehicle().wheel_radius * 2.0 * std::numbers::pi /
                             system_.gear_pair().gear_teeth / time;
-    result_.rms_inefficiency = 100.0 * std::sqrt(data[kSquaredRatio] / time);
-    result_.energy_mean_inefficiency = 100.0 * data[kFrictionEnergy] / data[kIncomingEnergy];
+    result_.rms_inefficiency = 100.0 * std::sqrt(components[kSquaredRatio] / time);
+    result_.energy_mean_inefficiency =
+        100.0 * components[kFrictionEnergy] / components[kIncomingEnergy];
     result_.transmission_error.mean =
-        system_.gear_pair().half_backlash + data[kTransmissionErrorIntegral] / time;
-    result_.pinion_friction_torque.mean = data[kPinionFrictionImpulse] / time;
+        system_.gear_pair().half_backlash + components[kTransmissionErrorIntegral] / time;
+    result_.pinion_friction_torque.mean = components[kPinionFrictionImpulse] / time;
     result_.separated_fraction /= time;
     result_.transmission_error.minimum = error_.minimum();
     result_.transmission_error.maximum = error_.maximum();
@@ -342,19 +343,19 @@ class CycleIntegrator {
 
 }  // namespace
 
-MeshCycle IntegrateMeshCycle(const GearPairSystem& system, const SectionState& start,
-                             double input_torque, double resistive_torque,
-                             const CycleOptions& options) {
+MeshCycle integrate_mesh_cycle(const GearPairSystem& system, const SectionState& start,
+                               double input_torque, double resistive_torque,
+                               const CycleOptions& options) {
   const State state = {start.pinion_shaft_twist,
                        0.0,
-                       system.MeshAdvanceAtSection(start.advance_with_error),
+                       system.mesh_advance_at_section(start.advance_with_error),
                        start.gear_shaft_twist,
                        start.pinion_shaft_speed,
                        start.pinion_speed,
                        start.gear_speed,
                        start.gear_shaft_speed};
   CycleIntegrator integrator(system, state, input_torque, resistive_torque, options);
-  return integrator.Run();
+  return integrator.run();
 }
 
 }  // namespace tribodyn::yardstick

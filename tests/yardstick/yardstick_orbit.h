@@ -54,15 +54,15 @@ struct CycleOptions {
 
 /// Integrates eqs 1-4 over one mesh cycle with constant torques, restarting at every table node
 /// and at every contact event. Throws std::runtime_error if CVODE fails or the pinion stops.
-MeshCycle IntegrateMeshCycle(const GearPairSystem& system, const SectionState& start,
-                             double input_torque, double resistive_torque,
-                             const CycleOptions& options = {});
+MeshCycle integrate_mesh_cycle(const GearPairSystem& system, const SectionState& start,
+                               double input_torque, double resistive_torque,
+                               const CycleOptions& options = {});
 
 /// Quasi-static start at a speed: static wind-up, flanks pressed by T_s = T_w N_p / N_g.
-SectionState QuasiStaticStart(const GearPairSystem& system, double vehicle_speed);
+SectionState quasi_static_start(const GearPairSystem& system, double vehicle_speed);
 
 /// T_w N_p / N_g with T_w of eq 7: the input torque without friction, N m.
-double FrictionlessInputTorque(const GearPairSystem& system, double vehicle_speed);
+double frictionless_input_torque(const GearPairSystem& system, double vehicle_speed);
 
 struct OrbitOptions {
   CycleOptions cycle;
@@ -87,8 +87,8 @@ struct Orbit {
 
 /// Period-1 orbit at a prescribed mean vehicle speed (m/s), T_w from eq 7 at that speed, T_s
 /// solved. Where orbits coexist `start` and `input_torque` decide which one is found.
-Orbit FindPeriodicOrbit(const GearPairSystem& system, const SectionState& start,
-                        double input_torque, double vehicle_speed,
-                        const OrbitOptions& options = {});
+Orbit find_periodic_orbit(const GearPairSystem& system, const SectionState& start,
+                          double input_torque, double vehicle_speed,
+                          const OrbitOptions& options = {});
 
 }  // namespace tribodyn::yardstick

@@ -15,18 +15,18 @@ namespace {
 constexpr int kUnknowns = 8;  // the seven section variables and T_s
 using Unknowns = std::array<double, kUnknowns>;
 
-Unknowns Pack(const SectionState& state, double input_torque) {
+Unknowns pack(const SectionState& state, double input_torque) {
   return {state.pinion_shaft_twist, state.gear_shaft_twist,
           state.pinion_shaft_speed, state.pinion_speed,
           state.gear_speed,         state.gear_shaft_speed,
           state.advance_with_error, input_torque};
 }
 
-SectionState Unpack(const Unknowns& values) {
+SectionState unpack(const Unknowns& values) {
   return {values[0], values[1], values[2], values[3], values[4], values[5], values[6]};
 }
 
-double LargestMagnitude(const Unknowns& values) {
+double largest_magnitude(const Unknowns& values) {
   double largest = 0.0;
   for (double value : values) largest = std::max(largest, std::abs(value));
   return largest;
@@ -38,10 +38,10 @@ class ShootingProblem {
   ShootingProblem(const GearPairSystem& system, double vehicle_speed, const CycleOptions& options)
       : system_(system),
         vehicle_speed_(vehicle_speed),
-        resistive_torque_(ResistiveTorque(system.vehicle(), vehicle_speed)),
+        resistive_torque_(resistive_torque(system.vehicle(), vehicle_speed)),
         options_(options) {
     const GearPairParameters& gear = system.gear_pair();
-    const double input_torque = FrictionlessInputTorque(system, vehicle_speed);
+    const double input_torque = frictionless_input_torque(system, vehicle_speed);
     scale_ = {input_torque / gear.pinion_shaft_stiffness,
               resistive_torque_ / gear.gear_shaft_stiffness,
               1.0,
@@ -52,35 +52,35 @@ class ShootingProblem {
               input_torque};
   }
 
-  MeshCycle Integrate(const Unknowns& values) {
+  MeshCycle integrate(const Unknowns& values) {
     ++integrated_cycles_;
-    return IntegrateMeshCycle(system_, Unpack(values), values[7], resistive_torque_, options_);
+    return integrate_mesh_cycle(system_, unpack(values), values[7], resistive_torque_, options_);
   }
 
   // Scaled mismatch after one cycle; the last one is the mean speed, against 1 %.
-  Unknowns Mismatch(const Unknowns& values, const MeshCycle& cycle) const {
-    const Unknowns end = Pack(cycle.end, cycle.input_torque);
-    Unknowns mismatch;
-    for (int i = 0; i < 7; ++i) mismatch[i] = (end[i] - values[i]) / scale_[i];
-    mismatch[7] = 100.0 * (cycle.vehicle_speed / vehicle_speed_ - 1.0);
-    return mismatch;
+  Unknowns mismatch(const Unknowns& values, const MeshCycle& cycle) const {
+    const Unknowns end = pack(cycle.end, cycle.input_torque);
+    Unknowns out;
+    for (int i = 0; i < 7; ++i) out[i] = (end[i] - values[i]) / scale_[i];
+    out[7] = 100.0 * (cycle.vehicle_speed / vehicle_speed_ - 1.0);
+    return out;
   }
 
-  std::vector<std::vector<double>> Jacobian(const Unknowns& values, const Unknowns& base,
+  std::vector<std::vector<double>> jacobian(const Unknowns& values, const Unknowns& base,
                                             double step) {
-    std::vector<std::vector<double>> jacobian(kUnknowns, std::vector<double>(kUnknowns));
+    std::vector<std::vector<double>> out(kUnknowns, std::vector<double>(kUnknowns));
     for (int column = 0; column < kUnknowns; ++column) {
       Unknowns moved = values;
       moved[column] += step * scale_[column];
-      const Unknowns mismatch = Mismatch(moved, Integrate(moved));
+      const Unknowns change = mismatch(moved, integrate(moved));
       for (int row = 0; row < kUnknowns; ++row) {
-        jacobian[row][column] = (mismatch[row] - base[row]) / step;
+        out[row][column] = (change[row] - base[row]) / step;
       }
     }
-    return jacobian;
+    return out;
   }
 
-  Unknowns Moved(const Unknowns& values, const std::vector<double>& direction,
+  Unknowns moved(const Unknowns& values, const std::vector<double>& direction,
                  double length) const {
     Unknowns moved = values;
     for (int i = 0; i < kUnknowns; ++i) moved[i] += length * direction[i] * scale_[i];
@@ -100,61 +100,61 @@ class ShootingProblem {
 
 }  // namespace
 
-double FrictionlessInputTorque(const GearPairSystem& system, double vehicle_speed) {
-  return ResistiveTorque(system.vehicle(), vehicle_speed) * system.gear_pair().pinion_teeth /
+double frictionless_input_torque(const GearPairSystem& system, double vehicle_speed) {
+  return resistive_torque(system.vehicle(), vehicle_speed) * system.gear_pair().pinion_teeth /
          system.gear_pair().gear_teeth;
 }
 
-SectionState QuasiStaticStart(const GearPairSystem& system, double vehicle_speed) {
+SectionState quasi_static_start(const GearPairSystem& system, double vehicle_speed) {
   const GearPairParameters& gear = system.gear_pair();
-  const double input_torque = FrictionlessInputTorque(system, vehicle_speed);
+  const double input_torque = frictionless_input_torque(system, vehicle_speed);
   const double gear_speed = vehicle_speed / system.vehicle().wheel_radius;
   const double pinion_speed = gear_speed * gear.gear_teeth / gear.pinion_teeth;
-  const double mesh_force = input_torque / gear.pinion_contact_radius.Value(0.0);
+  const double mesh_force = input_torque / gear.pinion_contact_radius.value(0.0);
   SectionState start;
   start.pinion_shaft_twist = input_torque / gear.pinion_shaft_stiffness;
   start.gear_shaft_twist =
-      ResistiveTorque(system.vehicle(), vehicle_speed) / gear.gear_shaft_stiffness;
+      resistive_torque(system.vehicle(), vehicle_speed) / gear.gear_shaft_stiffness;
   start.pinion_shaft_speed = start.pinion_speed = pinion_speed;
   start.gear_speed = start.gear_shaft_speed = gear_speed;
-  start.advance_with_error = gear.half_backlash + mesh_force / gear.mesh_stiffness.Value(0.0) +
-                             gear.static_transmission_error.Value(0.0);
+  start.advance_with_error = gear.half_backlash + mesh_force / gear.mesh_stiffness.value(0.0) +
+                             gear.static_transmission_error.value(0.0);
   return start;
 }
 
-Orbit FindPeriodicOrbit(const GearPairSystem& system, const SectionState& start,
-                        double input_torque, double vehicle_speed, const OrbitOptions& options) {
+Orbit find_periodic_orbit(const GearPairSystem& system, const SectionState& start,
+                          double input_torque, double vehicle_speed, const OrbitOptions& options) {
   ShootingProblem problem(system, vehicle_speed, options.cycle);
-  Unknowns values = Pack(start, input_torque);
+  Unknowns values = pack(start, input_torque);
   for (int cycle = 0; cycle < options.marching_cycles; ++cycle) {
-    const MeshCycle marched = problem.Integrate(values);
-    values = Pack(marched.end, input_torque);
+    const MeshCycle marched = problem.integrate(values);
+    values = pack(marched.end, input_torque);
     for (int i = 2; i <= 5; ++i) values[i] *= vehicle_speed / marched.vehicle_speed;
   }
 
   Orbit orbit;
-  orbit.cycle = problem.Integrate(values);
-  Unknowns mismatch = problem.Mismatch(values, orbit.cycle);
+  orbit.cycle = problem.integrate(values);
+  Unknowns mismatch = problem.mismatch(values, orbit.cycle);
   std::vector<std::vector<double>> jacobian;
   bool fresh_jacobian = false;
-  while (LargestMagnitude(mismatch) > options.mismatch_tolerance &&
+  while (largest_magnitude(mismatch) > options.mismatch_tolerance &&
          orbit.iterations < options.maximum_iterations) {
     ++orbit.iterations;
     if (jacobian.empty()) {
-      jacobian = problem.Jacobian(values, mismatch, options.difference_step);
+      jacobian = problem.jacobian(values, mismatch, options.difference_step);
       fresh_jacobian = true;
     }
     std::vector<double> direction =
-        SolveLinearSystem(jacobian, std::vector<double>(mismatch.begin(), mismatch.end()));
+        solve_linear_system(jacobian, std::vector<double>(mismatch.begin(), mismatch.end()));
     for (double& component : direction) component = -component;
     // The longest step that lowers the mismatch.
     bool accepted = false;
     double reduction = 1.0;
     for (double length = 1.0; length > 1e-3 && !accepted; length *= 0.5) {
-      const Unknowns trial = problem.Moved(values, direction, length);
-      const MeshCycle cycle = problem.Integrate(trial);
-      const Unknowns trial_mismatch = problem.Mismatch(trial, cycle);
-      reduction = LargestMagnitude(trial_mismatch) / LargestMagnitude(mismatch);
+      const Unknowns trial = problem.moved(values, direction, length);
+      const MeshCycle cycle = problem.integrate(trial);
+      const Unknowns trial_mismatch = problem.mismatch(trial, cycle);
+      reduction = largest_magnitude(trial_mismatch) / largest_magnitude(mismatch);
       accepted = reduction < 1.0 - 0.25 * length;
       if (accepted) {
         values = trial;
@@ -169,8 +169,8 @@ Orbit FindPeriodicOrbit(const GearPairSystem& system, const SectionState& start,
     if (!accepted || reduction > 0.1) jacobian.clear();
     fresh_jacobian = false;
   }
-  orbit.start = Unpack(values);
-  orbit.mismatch = LargestMagnitude(mismatch);
+  orbit.start = unpack(values);
+  orbit.mismatch = largest_magnitude(mismatch);
   orbit.converged = orbit.mismatch <= options.mismatch_tolerance;
   orbit.integrated_cycles = problem.integrated_cycles();
   return orbit;

@@ -8,7 +8,7 @@
 
 namespace tribodyn::yardstick {
 
-double FourierSeries::Value(double angle) const {
+double FourierSeries::value(double angle) const {
   double sum = constant;
   for (int i = 0; i < kHarmonics; ++i) {
     sum += sine[i] * std::sin((i + 1) * angle) + cosine[i] * std::cos((i + 1) * angle);
@@ -16,7 +16,7 @@ double FourierSeries::Value(double angle) const {
   return sum;
 }
 
-double FourierSeries::Derivative(double angle) const {
+double FourierSeries::derivative(double angle) const {
   double sum = 0.0;
   for (int i = 0; i < kHarmonics; ++i) {
     sum += (i + 1) * (sine[i] * std::cos((i + 1) * angle) - cosine[i] * std::sin((i + 1) * angle));
@@ -24,7 +24,7 @@ double FourierSeries::Derivative(double angle) const {
   return sum;
 }
 
-double FourierSeries::OscillatingIntegral(double angle) const {
+double FourierSeries::oscillating_integral(double angle) const {
   double sum = 0.0;
   for (int i = 0; i < kHarmonics; ++i) {
     sum += (cosine[i] * std::sin((i + 1) * angle) - sine[i] * std::cos((i + 1) * angle)) / (i + 1);
@@ -32,7 +32,7 @@ double FourierSeries::OscillatingIntegral(double angle) const {
   return sum;
 }
 
-double ResistiveTorque(const VehicleParameters& vehicle, double vehicle_speed_meters_per_second) {
+double resistive_torque(const VehicleParameters& vehicle, double vehicle_speed_meters_per_second) {
   const double weight = vehicle.mass * vehicle.gravity;
   return vehicle.wheel_radius *
          (weight * vehicle.rolling_resistance * std::cos(vehicle.ascent_angle) +
@@ -53,36 +53,36 @@ GearPairSystem::GearPairSystem(const GearPairParameters& gear_pair,
   gear_pair_.gear_contact_radius.constant = exact;
 }
 
-double GearPairSystem::GearAngle(const State& state) const {
+double GearPairSystem::gear_angle(const State& state) const {
   return (gear_pair_.pinion_contact_radius.constant * state[kPinionAngle] - state[kMeshAdvance]) /
          gear_pair_.gear_contact_radius.constant;
 }
 
-double GearPairSystem::AdvanceWithError(const State& state) const {
+double GearPairSystem::advance_with_error(const State& state) const {
   const double pinion_phase = gear_pair_.pinion_teeth * state[kPinionAngle];
-  const double gear_phase = gear_pair_.gear_teeth * GearAngle(state);
+  const double gear_phase = gear_pair_.gear_teeth * gear_angle(state);
   return gear_pair_.half_backlash + state[kMeshAdvance] +
-         gear_pair_.pinion_contact_radius.OscillatingIntegral(pinion_phase) /
+         gear_pair_.pinion_contact_radius.oscillating_integral(pinion_phase) /
              gear_pair_.pinion_teeth -
-         gear_pair_.gear_contact_radius.OscillatingIntegral(gear_phase) / gear_pair_.gear_teeth;
+         gear_pair_.gear_contact_radius.oscillating_integral(gear_phase) / gear_pair_.gear_teeth;
 }
 
-double GearPairSystem::MeshAdvanceAtSection(double advance_with_error) const {
+double GearPairSystem::mesh_advance_at_section(double target) const {
   State state{};
   const auto mismatch = [&](double advance) {
     state[kMeshAdvance] = advance;
-    return AdvanceWithError(state) - advance_with_error;
+    return advance_with_error(state) - target;
   };
-  const double guess = advance_with_error - gear_pair_.half_backlash;
+  const double guess = target - gear_pair_.half_backlash;
   const double margin = std::abs(guess) + gear_pair_.half_backlash;
-  return FindRoot(mismatch, guess - margin, guess + margin);
+  return find_root(mismatch, guess - margin, guess + margin);
 }
 
-double GearPairSystem::PinionAngleAtNode(int node) const {
+double GearPairSystem::pinion_angle_at_node(int node) const {
   return 2.0 * std::numbers::pi * node / (kIntervals * gear_pair_.pinion_teeth);
 }
 
-Instant GearPairSystem::Evaluate(const State& state, int interval, ContactMode mode,
+Instant GearPairSystem::evaluate(const State& state, int interval, ContactMode mode,
                                  double input_torque, double resistive_torque) const {
   const GearPairParameters& gear = gear_pair_;
   Instant now;
@@ -90,14 +90,14 @@ Instant GearPairSystem::Evaluate(const State& state, int interval, ContactMode m
   now.minimum_film_parameter = std::numeric_limits<double>::infinity();
 
   const double pinion_phase = gear.pinion_teeth * state[kPinionAngle];
-  const double gear_phase = gear.gear_teeth * GearAngle(state);
-  const double pinion_radius = gear.pinion_contact_radius.Value(pinion_phase);
-  const double gear_radius = gear.gear_contact_radius.Value(gear_phase);
+  const double gear_phase = gear.gear_teeth * gear_angle(state);
+  const double pinion_radius = gear.pinion_contact_radius.value(pinion_phase);
+  const double gear_radius = gear.gear_contact_radius.value(gear_phase);
   now.transmission_error =
-      AdvanceWithError(state) - gear.static_transmission_error.Value(pinion_phase);
+      advance_with_error(state) - gear.static_transmission_error.value(pinion_phase);
   now.transmission_error_rate = pinion_radius * state[kPinionSpeed] -
                                 gear_radius * state[kGearSpeed] -
-                                gear.static_transmission_error.Derivative(pinion_phase) *
+                                gear.static_transmission_error.derivative(pinion_phase) *
                                     gear.pinion_teeth * state[kPinionSpeed];
 
   double backlash_function = 0.0;  // f of eq 5
@@ -118,9 +118,9 @@ Instant GearPairSystem::Evaluate(const State& state, int interval, ContactMode m
     case ContactMode::kSeparated:
       break;
   }
-  now.mesh_force = gear.mesh_stiffness.Value(pinion_phase) * backlash_function +
+  now.mesh_force = gear.mesh_stiffness.value(pinion_phase) * backlash_function +
                    gear.mesh_damping * now.transmission_error_rate;
-  AddFlankFriction(state, interval, pressing * now.mesh_force, &now);
+  add_flank_friction(state, interval, pressing * now.mesh_force, &now);
 
   const double pinion_shaft_torque =
       gear.pinion_shaft_stiffness * state[kPinionShaftTwist] +
@@ -145,8 +145,8 @@ Instant GearPairSystem::Evaluate(const State& state, int interval, ContactMode m
   return now;
 }
 
-void GearPairSystem::AddFlankFriction(const State& state, int interval, double flank_load,
-                                      Instant* instant) const {
+void GearPairSystem::add_flank_friction(const State& state, int interval, double flank_load,
+                                        Instant* instant) const {
   if (!(flank_load > 0.0)) return;
   const double psi = gear_pair_.pinion_teeth * state[kPinionAngle] / (2.0 * std::numbers::pi);
   const double fraction = psi * kIntervals - interval;
@@ -168,7 +168,7 @@ void GearPairSystem::AddFlankFriction(const State& state, int interval, double f
     contact.pinion_velocity_y = pinion_arm_y * state[kPinionSpeed];
     contact.gear_velocity_x = gear_arm_x * state[kGearSpeed];
     contact.gear_velocity_y = gear_arm_y * state[kGearSpeed];
-    const ContactResult result = friction_.Evaluate(contact);
+    const ContactResult result = friction_.evaluate(contact);
 
     const double sliding_x = contact.pinion_velocity_x - contact.gear_velocity_x;
     const double sliding_y = contact.pinion_velocity_y - contact.gear_velocity_y;
@@ -193,13 +193,13 @@ void GearPairSystem::AddFlankFriction(const State& state, int interval, double f
   }
 }
 
-ContactMode GearPairSystem::ModeOf(const State& state) const {
-  const Instant drive = Evaluate(state, 0, ContactMode::kDriveUnloaded, 0.0, 0.0);
+ContactMode GearPairSystem::mode_of(const State& state) const {
+  const Instant drive = evaluate(state, 0, ContactMode::kDriveUnloaded, 0.0, 0.0);
   if (drive.transmission_error >= gear_pair_.half_backlash) {
     return drive.mesh_force > 0.0 ? ContactMode::kDriveLoaded : ContactMode::kDriveUnloaded;
   }
   if (drive.transmission_error > -gear_pair_.half_backlash) return ContactMode::kSeparated;
-  const Instant coast = Evaluate(state, 0, ContactMode::kCoastUnloaded, 0.0, 0.0);
+  const Instant coast = evaluate(state, 0, ContactMode::kCoastUnloaded, 0.0, 0.0);
   return coast.mesh_force < 0.0 ? ContactMode::kCoastLoaded : ContactMode::kCoastUnloaded;
 }
 

@@ -18,10 +18,10 @@ struct FourierSeries {
   std::array<double, kHarmonics> sine{};
   std::array<double, kHarmonics> cosine{};
 
-  double Value(double angle) const;
-  double Derivative(double angle) const;  ///< per radian of `angle`
+  double value(double angle) const;
+  double derivative(double angle) const;  ///< per radian of `angle`
   /// Antiderivative without the constant's part: sum_i (-s_i cos + c_i sin)(i angle) / i.
-  double OscillatingIntegral(double angle) const;
+  double oscillating_integral(double angle) const;
 };
 
 /// One column of the tooth contact data: samples at psi = 0, 1/96, ... 1 in each slot. Linear
@@ -80,7 +80,7 @@ struct VehicleParameters {
 };
 
 /// T_w of eq 7 with the inertia of the vehicle, N m.
-double ResistiveTorque(const VehicleParameters& vehicle, double vehicle_speed_meters_per_second);
+double resistive_torque(const VehicleParameters& vehicle, double vehicle_speed_meters_per_second);
 
 /// The eight states. Angles are kept as differences so that the transmission error keeps its
 /// digits: `mesh_advance` is u = R_p0 phi_p - R_g0 phi_g, of the order of the backlash.
@@ -133,25 +133,26 @@ class GearPairSystem {
 
   /// Right-hand side of eqs 1-4 and all outputs, smooth for a fixed `interval` and `mode`: tables
   /// are extended linearly beyond their interval and f is extended beyond x = +-b.
-  Instant Evaluate(const State& state, int interval, ContactMode mode, double input_torque,
+  Instant evaluate(const State& state, int interval, ContactMode mode, double input_torque,
                    double resistive_torque) const;
 
-  ContactMode ModeOf(const State& state) const;
+  ContactMode mode_of(const State& state) const;
 
-  /// x + e as a function of the state, and its inverse for u at phi_p = 0 (the section).
-  double AdvanceWithError(const State& state) const;
-  double MeshAdvanceAtSection(double advance_with_error) const;
+  /// x + e of a state [m].
+  double advance_with_error(const State& state) const;
+  /// The inverse at the section (phi_p = 0): u [m] with x + e = `target`.
+  double mesh_advance_at_section(double target) const;
 
-  double PinionAngleAtNode(int node) const;  ///< phi_p at psi = node / 96, rad
+  double pinion_angle_at_node(int node) const;  ///< phi_p at psi = node / 96, rad
 
   const GearPairParameters& gear_pair() const { return gear_pair_; }
   const VehicleParameters& vehicle() const { return vehicle_; }
   const ContactFriction& friction() const { return friction_; }
 
  private:
-  double GearAngle(const State& state) const;
-  void AddFlankFriction(const State& state, int interval, double flank_load,
-                        Instant* instant) const;
+  double gear_angle(const State& state) const;
+  void add_flank_friction(const State& state, int interval, double flank_load,
+                          Instant* instant) const;
 
   GearPairParameters gear_pair_;
   VehicleParameters vehicle_;

@@ -22,15 +22,15 @@ constexpr double kContactTolerance = 1e-9;
 constexpr double kOrbitTolerance = 1e-7;
 constexpr double kExtremeTolerance = 1e-6;
 
-const json& WorkedPoints() {
-  static const json worked_points = ReadJsonFile(test_data_file("worked_points.json"));
+const json& worked_points() {
+  static const json worked_points = read_json_file(test_data_file("worked_points.json"));
   return worked_points;
 }
 
-GearPairSystem MakeSystem(FrictionArms arms) {
-  const json gear_set = ReadJsonFile(test_data_file("reference_gear_set.json"));
-  return GearPairSystem(ReadGearPair(gear_set), ReadVehicle(gear_set),
-                        ReadOrbitFriction(WorkedPoints().at("orbit_inputs").at("values")), arms);
+GearPairSystem make_system(FrictionArms arms) {
+  const json gear_set = read_json_file(test_data_file("reference_gear_set.json"));
+  return GearPairSystem(read_gear_pair(gear_set), read_vehicle(gear_set),
+                        read_orbit_friction(worked_points().at("orbit_inputs").at("values")), arms);
 }
 
 // Zeros are compared absolutely; "Infinity" stands for infinity.
@@ -47,20 +47,20 @@ testing::AssertionResult Matches(const json& expected, double actual, double tol
                                      << error << " > " << tolerance;
 }
 
-std::vector<std::string> NamesOf(const char* block) {
+std::vector<std::string> names_of(const char* block) {
   std::vector<std::string> names;
-  for (const json& item : WorkedPoints().at(block)) names.push_back(item.at("name"));
+  for (const json& item : worked_points().at(block)) names.push_back(item.at("name"));
   return names;
 }
 
-const json& Find(const char* block, const std::string& name) {
-  for (const json& item : WorkedPoints().at(block)) {
+const json& find(const char* block, const std::string& name) {
+  for (const json& item : worked_points().at(block)) {
     if (item.at("name") == name) return item;
   }
   throw std::out_of_range(name);
 }
 
-std::string TestName(const testing::TestParamInfo<std::string>& info) {
+std::string test_name(const testing::TestParamInfo<std::string>& info) {
   std::string name = info.param;
   for (char& character : name) {
     if (std::isalnum(static_cast<unsigned char>(character)) == 0) character = '_';
@@ -71,12 +71,12 @@ std::string TestName(const testing::TestParamInfo<std::string>& info) {
 class WorkedContact : public testing::TestWithParam<std::string> {};
 
 TEST_P(WorkedContact, EveryLeafMatches) {
-  const json& worked = Find("contacts", GetParam());
+  const json& worked = find("contacts", GetParam());
   const json& expected = worked.at("expected");
   for (const int quadrature_nodes : {16, 64}) {
     SCOPED_TRACE(quadrature_nodes);
-    const ContactCase contact = ReadContactCase(worked.at("input"), quadrature_nodes);
-    const ContactResult result = contact.friction.Evaluate(contact.input);
+    const ContactCase contact = read_contact_case(worked.at("input"), quadrature_nodes);
+    const ContactResult result = contact.friction.evaluate(contact.input);
     const std::vector<std::pair<const char*, double>> leaves = {
         {"W_EHL", result.film_load},
         {"W_asp", result.asperity_load},
@@ -121,33 +121,33 @@ TEST_P(WorkedContact, EveryLeafMatches) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, WorkedContact, testing::ValuesIn(NamesOf("contacts")), TestName);
+INSTANTIATE_TEST_SUITE_P(All, WorkedContact, testing::ValuesIn(names_of("contacts")), test_name);
 
 TEST(Friction, AsperityIntegralMeetsClosedForms) {
   for (const double l : {0.0, 0.5, 1.0, 2.0, 3.0, 5.0}) {
     const double density = std::exp(-0.5 * l * l) / std::sqrt(2.0 * std::numbers::pi);
     const double tail = 0.5 * std::erfc(l / std::numbers::sqrt2);
-    EXPECT_NEAR(AsperityIntegral(0.0, l), tail, 1e-14 * tail) << l;
+    EXPECT_NEAR(asperity_integral(0.0, l), tail, 1e-14 * tail) << l;
     // The closed form of order two loses digits as l grows.
-    EXPECT_NEAR(AsperityIntegral(2.0, l), (1.0 + l * l) * tail - l * density,
+    EXPECT_NEAR(asperity_integral(2.0, l), (1.0 + l * l) * tail - l * density,
                 1e-14 * tail * l + 1e-15)
         << l;
   }
   // int_0^inf t^(5/2) exp(-t^2/2) dt = 2^(3/4) Gamma(7/4)
   const double at_zero =
       std::pow(2.0, 0.75) * std::tgamma(1.75) / std::sqrt(2.0 * std::numbers::pi);
-  EXPECT_NEAR(AsperityIntegral(2.5, 0.0), at_zero, 1e-14);
+  EXPECT_NEAR(asperity_integral(2.5, 0.0), at_zero, 1e-14);
 }
 
 TEST(System, VelocityArmsTakeOutExactlyTheFrictionPower) {
-  const GearPairSystem system = MakeSystem(FrictionArms::kFromVelocities);
-  for (const json& orbit : WorkedPoints().at("orbits")) {
-    const SectionState section = ReadSectionState(orbit.at("section_state"));
+  const GearPairSystem system = make_system(FrictionArms::kFromVelocities);
+  for (const json& orbit : worked_points().at("orbits")) {
+    const SectionState section = read_section_state(orbit.at("section_state"));
     State state{};
-    state[kMeshAdvance] = system.MeshAdvanceAtSection(section.advance_with_error);
+    state[kMeshAdvance] = system.mesh_advance_at_section(section.advance_with_error);
     state[kPinionSpeed] = section.pinion_speed;
     state[kGearSpeed] = section.gear_speed;
-    const Instant now = system.Evaluate(state, 0, ContactMode::kDriveLoaded, 0.0, 0.0);
+    const Instant now = system.evaluate(state, 0, ContactMode::kDriveLoaded, 0.0, 0.0);
     EXPECT_EQ(now.friction_power > 0.0, now.mesh_force > 0.0);
     EXPECT_NEAR(now.pinion_friction_torque * section.pinion_speed +
                     now.gear_friction_torque * section.gear_speed,
@@ -157,12 +157,12 @@ TEST(System, VelocityArmsTakeOutExactlyTheFrictionPower) {
 
 class WorkedOrbit : public testing::TestWithParam<std::string> {
  protected:
-  const json& worked() const { return Find("orbits", GetParam()); }
+  const json& worked() const { return find("orbits", GetParam()); }
   double vehicle_speed() const {
     return worked().at("speed_kilometres_per_hour").get<double>() / 3.6;
   }
 
-  void ExpectMeasures(const MeshCycle& cycle) const {
+  void expect_measures(const MeshCycle& cycle) const {
     const json& expected = worked().at("expected");
     struct Leaf {
       const char* name;
@@ -190,7 +190,7 @@ class WorkedOrbit : public testing::TestWithParam<std::string> {
     EXPECT_NEAR(cycle.vehicle_speed / vehicle_speed(), 1.0, kOrbitTolerance);
   }
 
-  void ExpectSectionState(const SectionState& state) const {
+  void expect_section_state(const SectionState& state) const {
     const json& expected = worked().at("section_state");
     EXPECT_TRUE(Matches(expected.at("d_phi_sp"), state.pinion_shaft_twist, kOrbitTolerance));
     EXPECT_TRUE(Matches(expected.at("d_phi_gw"), state.gear_shaft_twist, kOrbitTolerance));
@@ -203,17 +203,17 @@ class WorkedOrbit : public testing::TestWithParam<std::string> {
 };
 
 TEST_P(WorkedOrbit, OneCycleReturnsToTheSectionState) {
-  const GearPairSystem system = MakeSystem(FrictionArms::kTabulated);
-  const MeshCycle cycle = IntegrateMeshCycle(system, ReadSectionState(worked().at("section_state")),
-                                             worked().at("expected").at("T_s"),
-                                             ResistiveTorque(system.vehicle(), vehicle_speed()));
-  ExpectMeasures(cycle);
-  ExpectSectionState(cycle.end);
+  const GearPairSystem system = make_system(FrictionArms::kTabulated);
+  const MeshCycle cycle = integrate_mesh_cycle(
+      system, read_section_state(worked().at("section_state")), worked().at("expected").at("T_s"),
+      resistive_torque(system.vehicle(), vehicle_speed()));
+  expect_measures(cycle);
+  expect_section_state(cycle.end);
 }
 
 TEST_P(WorkedOrbit, ShootingFindsItFromAPerturbedStart) {
-  const GearPairSystem system = MakeSystem(FrictionArms::kTabulated);
-  SectionState start = ReadSectionState(worked().at("section_state"));
+  const GearPairSystem system = make_system(FrictionArms::kTabulated);
+  SectionState start = read_section_state(worked().at("section_state"));
   start.pinion_shaft_twist *= 1.01;
   start.gear_shaft_twist *= 0.99;
   start.advance_with_error *= 1.01;
@@ -223,46 +223,46 @@ TEST_P(WorkedOrbit, ShootingFindsItFromAPerturbedStart) {
   start.gear_speed *= 1.01;
   start.gear_shaft_speed *= 1.01;
   const double input_torque = 0.99 * worked().at("expected").at("T_s").get<double>();
-  const Orbit orbit = FindPeriodicOrbit(system, start, input_torque, vehicle_speed());
+  const Orbit orbit = find_periodic_orbit(system, start, input_torque, vehicle_speed());
   EXPECT_TRUE(orbit.converged) << "mismatch " << orbit.mismatch;
-  ExpectMeasures(orbit.cycle);
-  ExpectSectionState(orbit.start);
+  expect_measures(orbit.cycle);
+  expect_section_state(orbit.start);
   RecordProperty("integrated_cycles", orbit.integrated_cycles);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, WorkedOrbit, testing::ValuesIn(NamesOf("orbits")), TestName);
+INSTANTIATE_TEST_SUITE_P(All, WorkedOrbit, testing::ValuesIn(names_of("orbits")), test_name);
 
 TEST(Orbit, QuasiStaticStartFindsTheUpSweepBranchWhereTwoCoexist) {
-  const GearPairSystem system = MakeSystem(FrictionArms::kTabulated);
+  const GearPairSystem system = make_system(FrictionArms::kTabulated);
   const double vehicle_speed = 67.5 / 3.6;
   const Orbit orbit =
-      FindPeriodicOrbit(system, QuasiStaticStart(system, vehicle_speed),
-                        FrictionlessInputTorque(system, vehicle_speed), vehicle_speed);
+      find_periodic_orbit(system, quasi_static_start(system, vehicle_speed),
+                          frictionless_input_torque(system, vehicle_speed), vehicle_speed);
   EXPECT_TRUE(orbit.converged) << "mismatch " << orbit.mismatch;
-  EXPECT_TRUE(Matches(Find("orbits", "L1_67.5_up").at("expected").at("In_rms"),
+  EXPECT_TRUE(Matches(find("orbits", "L1_67.5_up").at("expected").at("In_rms"),
                       orbit.cycle.rms_inefficiency, kOrbitTolerance));
 }
 
 TEST(Orbit, MarchingLeadsIntoVibroImpact) {
-  const GearPairSystem system = MakeSystem(FrictionArms::kTabulated);
+  const GearPairSystem system = make_system(FrictionArms::kTabulated);
   const double vehicle_speed = 72.5 / 3.6;
   OrbitOptions options;
   options.marching_cycles = 50;
-  const Orbit orbit = FindPeriodicOrbit(system, QuasiStaticStart(system, vehicle_speed),
-                                        1.01 * FrictionlessInputTorque(system, vehicle_speed),
-                                        vehicle_speed, options);
+  const Orbit orbit = find_periodic_orbit(system, quasi_static_start(system, vehicle_speed),
+                                          1.01 * frictionless_input_torque(system, vehicle_speed),
+                                          vehicle_speed, options);
   EXPECT_TRUE(orbit.converged) << "mismatch " << orbit.mismatch;
-  EXPECT_TRUE(Matches(Find("orbits", "L1_72.5_up").at("expected").at("In_rms"),
+  EXPECT_TRUE(Matches(find("orbits", "L1_72.5_up").at("expected").at("In_rms"),
                       orbit.cycle.rms_inefficiency, kOrbitTolerance));
   EXPECT_GT(orbit.cycle.separated_fraction, 0.3);
 }
 
 // Arms from the actual sliding direction instead of the tabulated ones: how far the orbits move.
 TEST(Orbit, VelocityArmsMoveTheOrbitByLittle) {
-  const GearPairSystem system = MakeSystem(FrictionArms::kFromVelocities);
-  const json& worked = Find("orbits", "L1_67.5_down");
-  const Orbit orbit = FindPeriodicOrbit(system, ReadSectionState(worked.at("section_state")),
-                                        worked.at("expected").at("T_s"), 67.5 / 3.6);
+  const GearPairSystem system = make_system(FrictionArms::kFromVelocities);
+  const json& worked = find("orbits", "L1_67.5_down");
+  const Orbit orbit = find_periodic_orbit(system, read_section_state(worked.at("section_state")),
+                                          worked.at("expected").at("T_s"), 67.5 / 3.6);
   EXPECT_TRUE(orbit.converged) << "mismatch " << orbit.mismatch;
   EXPECT_TRUE(Matches(worked.at("expected").at("In_rms"), orbit.cycle.rms_inefficiency, 3e-5));
   EXPECT_TRUE(
