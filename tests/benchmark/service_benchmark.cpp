@@ -1286,6 +1286,7 @@ int main(int argc, char** argv) {
       {"screening", measure_screening},
       {"bands", measure_bands},
       {"campaigns", measure_campaigns},
+      {"interactive_beside_a_campaign", measure_interactive_beside_a_campaign},
       {"rig_campaigns", measure_rig_campaign},
       {"estimates", measure_estimates}};
   const std::string path = argc > 1 ? argv[1] : "build/benchmark/results.json";
