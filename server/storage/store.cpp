@@ -141,6 +141,7 @@ Store::Store(const std::filesystem::path& database)
     // opens no file later.
     writer_.exec("PRAGMA temp_store = MEMORY");
     readers_.open(path_, kReaderConnections);
+    checkpointer_.emplace(path_, writer_);
     lock_.lock_new_file();
     files_.emplace(path_);
     lock_.remember(files_->record());

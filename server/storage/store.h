@@ -14,6 +14,7 @@
 
 #include "server/storage/call_limits.h"
 #include "server/storage/campaign_rows.h"
+#include "server/storage/checkpointer.h"
 #include "server/storage/connections.h"
 #include "server/storage/database_files.h"
 #include "server/storage/database_lock.h"
@@ -316,7 +317,8 @@ class Store {
   Observers campaign_observers_;
   std::optional<DatabaseFiles> files_;  // set by the constructor when the files exist
   mutable std::mutex projects_mutex_;
-  std::set<std::string> projects_;  // guarded by projects_mutex_; those of the database
+  std::set<std::string> projects_;            // guarded by projects_mutex_; those of the database
+  std::optional<Checkpointer> checkpointer_;  // set by the constructor
 };
 
 }  // namespace tribodyn::server
