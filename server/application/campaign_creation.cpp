@@ -188,9 +188,8 @@ Outcome<v1::Campaign> create_campaign(Application& application,
       if (!request.validate_only() || !answer.ok()) return answer;
     }
   }
-  const auto inputs =
-      read_campaign(stated, resource_lookup(application.store, call.project, call.limits),
-                    "campaign", violations, lubricant_search(application, call));
+  auto inputs = read_campaign(stated, resource_lookup(application.store, call.project, call.limits),
+                              "campaign", violations, lubricant_search(application, call));
   if (!inputs) return invalid(violations);
   const NewCampaign campaign = new_campaign(request, *inputs, request_hash(stated), call);
   if (request.validate_only()) return campaign_preview(*inputs, campaign);
@@ -200,7 +199,8 @@ Outcome<v1::Campaign> create_campaign(Application& application,
   if (auto refused = take_hours(application, campaign.cost_seconds, call, place)) {
     return *std::move(refused);
   }
-  const auto admitted = application.jobs.campaigns().submit(campaign, call.limits);
+  const auto admitted =
+      application.jobs.campaigns().submit(campaign, *std::move(inputs), call.limits);
   if (!admitted.has_place) return campaign_turned_away(application);
   const StoredCampaign& stored = admitted.added.stored;
   if (admitted.added.kind != CampaignAdded::Kind::kAdded) {

@@ -44,8 +44,10 @@ std::size_t CampaignJobs::resume() {
   return count;
 }
 
-/// Queues the parts of a campaign. Requires control_mutex_.
-void CampaignJobs::activate(const StoredCampaign& campaign) {
+/// Queues the parts of a campaign. `inputs`: null if they are to be read from the store. Requires
+/// control_mutex_.
+void CampaignJobs::activate(const StoredCampaign& campaign,
+                            std::shared_ptr<const CampaignInputs> inputs) {
   RunningPointer running;
   {
     const std::lock_guard lock(mutex_);
@@ -55,6 +57,7 @@ void CampaignJobs::activate(const StoredCampaign& campaign) {
     // Before the entry can be seen: who finds it halted and idle removes it.
     const std::lock_guard inner(running->mutex);
     running->is_halted = false;
+    running->submitted = std::move(inputs);
   }
   start_parts(*running);
 }
@@ -156,14 +159,18 @@ bool CampaignJobs::has_place(const std::string& principal, std::int64_t own,
              kShareOfPrincipal * static_cast<double>(kMostRunningBytes);
 }
 
-CampaignJobs::Admitted CampaignJobs::submit(const NewCampaign& campaign, const CallLimits& limits) {
+CampaignJobs::Admitted CampaignJobs::submit(const NewCampaign& campaign, CampaignInputs inputs,
+                                            const CallLimits& limits) {
   Admitted out;
   out.has_place =
       has_place(campaign.principal, 0, campaign.request.size() + campaign.candidate_table.size());
   if (!out.has_place) return out;
   const std::lock_guard control(control_mutex_);
   out.added = store_.add_campaign(campaign, clock_(), limits);
-  if (out.added.kind == CampaignAdded::Kind::kAdded) activate(out.added.stored);
+  if (out.added.kind == CampaignAdded::Kind::kAdded) {
+    inputs.table.Clear();  // the columns are in `points`
+    activate(out.added.stored, std::make_shared<CampaignInputs>(std::move(inputs)));
+  }
   return out;
 }
 

@@ -41,8 +41,9 @@ class CampaignJobs {
     CampaignAdded added;
     bool has_place = true;  ///< false: too many campaigns run; nothing was added
   };
-  /// Adds a campaign and queues it.
-  Admitted submit(const NewCampaign& campaign, const CallLimits& limits = {});
+  /// Adds a campaign and queues it. `inputs`: those that the campaign was made of.
+  Admitted submit(const NewCampaign& campaign, CampaignInputs inputs,
+                  const CallLimits& limits = {});
   /// Returns the estimate of what is left of the campaigns of a principal that run [s of one
   /// processor].
   double unfinished_seconds(const std::string& principal) const;
@@ -84,7 +85,8 @@ class CampaignJobs {
   bool has_place(const std::string& principal, std::int64_t own, std::size_t bytes) const;
   void extend(Running& running, const StoredCampaign& campaign,
               const std::shared_ptr<const CampaignInputs>& inputs);
-  void activate(const StoredCampaign& campaign);
+  void activate(const StoredCampaign& campaign,
+                std::shared_ptr<const CampaignInputs> inputs = nullptr);
   void halt(std::int64_t id);
   void settle(std::int64_t id);
   std::optional<StoredCampaign> change(CampaignChange change, const CallLimits& limits);
@@ -93,6 +95,7 @@ class CampaignJobs {
   void end_care(const Running& running);
   void forget_if_idle(std::int64_t id);
   void load(Running& running);
+  std::shared_ptr<const CampaignInputs> stored_inputs(const StoredCampaign& stored);
   static void use_inputs(Part& part, const std::shared_ptr<const CampaignInputs>& inputs);
   bool take_tile(Running& running, Part& part);
   std::optional<Tile> next_candidates(Running& running) const;

@@ -70,12 +70,9 @@ void CampaignJobs::load(Running& running) {
                                        stored->platform + ", this server computes model " +
                                        kModelVersion + " on " + platform() + ": create it again");
   }
-  const ResourceLookup lookup =
-      accepted_lookup(store_, stored->project,
-                      {stored->lubricant_revision, stored->gear_set_revision,
-                       stored->surface_revision, stored->vehicle_revision});
-  auto inputs = std::make_shared<CampaignInputs>(
-      stored_campaign_inputs(*stored, store_.candidate_table(running.id), lookup));
+  std::shared_ptr<const CampaignInputs> inputs = std::move(running.submitted);
+  // Candidates may have been added since the request.
+  if (!inputs || inputs->points.candidates != stored->candidates) inputs = stored_inputs(*stored);
   for (const CampaignRefusal& each : store_.campaign_refusals(running.id)) {
     running.refusal_numbers[{each.reason, each.message}] = each.number;
   }
@@ -89,8 +86,18 @@ void CampaignJobs::load(Running& running) {
   running.missing = missing_candidates(taken, stored->candidates, stored->conditions);
   running.candidates = stored->candidates;
   running.is_careful = stored->lost_attempts >= kCarefulAttempts || !running.suspects.empty();
-  inputs->table.Clear();  // the columns are in `points`
   running.inputs = std::move(inputs);
+}
+
+/// Reads the inputs of a campaign from the store. Throws Refusal or StoreError.
+std::shared_ptr<const CampaignInputs> CampaignJobs::stored_inputs(const StoredCampaign& stored) {
+  const ResourceLookup lookup =
+      accepted_lookup(store_, stored.project,
+                      {stored.lubricant_revision, stored.gear_set_revision, stored.surface_revision,
+                       stored.vehicle_revision});
+  CampaignInputs out = stored_campaign_inputs(stored, store_.candidate_table(stored.id), lookup);
+  out.table.Clear();  // the columns are in `points`
+  return std::make_shared<CampaignInputs>(std::move(out));
 }
 
 void CampaignJobs::run_slice(const Lease& lease, PreparedGearSets& gear_sets,

@@ -72,12 +72,13 @@ struct CampaignJobs::Running {
   std::int64_t points;  // guarded by mutex, as all below
   double cost_seconds;  // estimate of all points, of one processor
   std::int64_t points_done;
-  std::int64_t candidates = 0;                   // those that are missing or in tiles
-  bool is_halted = false;                        // no further row is to be computed
-  std::shared_ptr<const CampaignInputs> inputs;  // null before the first slice
-  std::deque<RowRange> missing;                  // candidates that no part has taken
-  std::deque<CampaignSuspect> suspects;          // the same that come first, one at a time
-  bool is_careful = false;                       // part 0 alone computes
+  std::int64_t candidates = 0;                      // those that are missing or in tiles
+  bool is_halted = false;                           // no further row is to be computed
+  std::shared_ptr<const CampaignInputs> inputs;     // null before the first slice
+  std::shared_ptr<const CampaignInputs> submitted;  // of the request; null after the first slice
+  std::deque<RowRange> missing;                     // candidates that no part has taken
+  std::deque<CampaignSuspect> suspects;             // the same that come first, one at a time
+  bool is_careful = false;                          // part 0 alone computes
   std::size_t tiles_taken = 0;
   int tiles_written = 0;
   std::map<std::pair<std::string, std::string>, int> refusal_numbers;  // by reason and message
