@@ -7,7 +7,7 @@
 #include "core/contact/load_sharing.h"
 #include "core/contact/mean_shear_stress.h"
 #include "core/laws/laws.h"
-#include "core/lubricant/lubricant.h"
+#include "core/laws/lubricant.h"
 #include "core/lubricant/viscosity.h"
 #include "core/model_options.h"
 #include "core/surface/surface.h"

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "core/lubricant/lubricant.h"
+#include "core/laws/lubricant.h"
 
 namespace tribodyn {
 

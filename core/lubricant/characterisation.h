@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "core/laws/lubricant.h"
 #include "core/lubricant/base_oil.h"
 #include "core/lubricant/base_oil_estimates.h"
 #include "core/lubricant/gear_viscosity_grade.h"
-#include "core/lubricant/lubricant.h"
 #include "core/lubricant/lubricant_parameters.h"
 #include "core/lubricant/thermal_expansion.h"
 #include "core/lubricant/viscosity_temperature.h"

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/lubricant/lubricant.h"
+#include "core/laws/lubricant.h"
 #include "core/model_options.h"
 
 namespace tribodyn {

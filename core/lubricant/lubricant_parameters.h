@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "core/lubricant/lubricant.h"
+#include "core/laws/lubricant.h"
 
 namespace tribodyn {
 

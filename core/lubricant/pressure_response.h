@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/laws/lubricant.h"
 #include "core/laws/shear_law.h"
-#include "core/lubricant/lubricant.h"
 #include "core/model_options.h"
 
 namespace tribodyn {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/laws/laws.h"
-#include "core/lubricant/lubricant.h"
+#include "core/laws/lubricant.h"
 #include "core/model_options.h"
 #include "core/numerics/gauss_legendre.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/lubricant/lubricant.h"
+#include "core/laws/lubricant.h"
 
 namespace tribodyn {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/dynamics/gear_pair_system.h"
+#include "core/driveline/gear_pair_system.h"
 #include "core/study/history.h"
 
 namespace tribodyn {

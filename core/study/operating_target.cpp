@@ -30,4 +30,26 @@ OperatingTarget target_of(const Scene& scene, const OperatingCondition& c) {
   return t;
 }
 
+PeriodicProblem PointProblem::periodic(double tolerance) const {
+  PeriodicProblem out{
+      system,    contacts, gear_set.grids(), target.mean_pinion_speed, target.solve_wheel_torque,
+      tolerance, {}};
+  if (options.progress) {
+    out.interrupted = [&progress = options.progress] { return !progress(0); };
+  }
+  return out;
+}
+
+PointResult empty_result(const OperatingTarget& target, PointModel model) {
+  PointResult out;
+  out.vehicle_speed = target.vehicle_speed;
+  out.mean_pinion_speed = target.mean_pinion_speed;
+  out.model = model;
+  return out;
+}
+
+std::optional<double> known_error(double estimate) {
+  return std::isfinite(estimate) ? std::optional(estimate) : std::nullopt;
+}
+
 }  // namespace tribodyn

@@ -1,7 +1,10 @@
 #pragma once
 
-#include "core/dynamics/gear_pair_system.h"
-#include "core/study/operating_point.h"
+#include "core/driveline/gear_pair_system.h"
+#include "core/periodic/periodic_problem.h"
+#include "core/study/point_options.h"
+#include "core/study/point_result.h"
+#include "core/study/prepared_scene.h"
 
 namespace tribodyn {
 
@@ -15,5 +18,23 @@ struct OperatingTarget {
 
 /// Throws Refusal NO_FORWARD_ROTATION.
 OperatingTarget target_of(const Scene& scene, const OperatingCondition& condition);
+
+/// One operating point, as each way of solving it takes it.
+struct PointProblem {
+  GearPairSystem& system;
+  const FlankContactBatch& contacts;
+  PreparedGearSet& gear_set;
+  const OperatingTarget& target;
+  const PointOptions& options;
+
+  /// Its periodic response, to a tolerance. The options must outlive it.
+  PeriodicProblem periodic(double tolerance) const;
+};
+
+/// A result with the speeds of the target, all else empty.
+PointResult empty_result(const OperatingTarget& target, PointModel model);
+
+/// An estimate as results hold it: absent if it is infinite.
+std::optional<double> known_error(double estimate);
 
 }  // namespace tribodyn

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/dynamics/periodic_orbit.h"
+#include "core/periodic/periodic_orbit.h"
 #include "core/study/history_sampler.h"
 #include "core/study/response_record.h"
 

@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "core/contact/flank_contact_batch.h"
-#include "core/dynamics/mesh_grid.h"
-#include "core/study/quasi_static.h"
-#include "core/study/reference_orbits.h"
+#include "core/integrate/mesh_grid.h"
+#include "core/periodic/reference_orbits.h"
+#include "core/reduced/quasi_static.h"
 #include "core/study/scene.h"
 
 namespace tribodyn {
@@ -24,14 +24,14 @@ class PreparedGearSet {
   MeshGrids& grids() { return grids_; }
   /// For studies that meet the same speeds and loads with many lubricants.
   ReferenceOrbits& reference_orbits() { return reference_orbits_; }
-  QuasiStaticChances& quasi_static_chances() { return quasi_static_chances_; }
+  QuasiStaticScreen& quasi_static_screen() { return quasi_static_screen_; }
 
  private:
   GearSet gear_set_;
   MeshData mesh_;
   MeshGrids grids_;
   ReferenceOrbits reference_orbits_;
-  QuasiStaticChances quasi_static_chances_;
+  QuasiStaticScreen quasi_static_screen_;
 };
 
 /// A scene with everything that its points share. One thread at a time. Keeps the scene's

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/study/operating_point.h"
+#include "core/study/point_result.h"
 
 namespace tribodyn {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "core/dynamics/mesh_cycle_march.h"
-#include "core/study/operating_point.h"
+#include "core/integrate/mesh_cycle_march.h"
+#include "core/study/point_result.h"
 
 namespace tribodyn {
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/gear/gear_set.h"
+#include "core/laws/lubricant.h"
 #include "core/lubricant/fluid_grounds.h"
-#include "core/lubricant/lubricant.h"
 #include "core/model_options.h"
 #include "core/surface/surface.h"
 #include "core/vehicle/vehicle.h"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/study/operating_point.h"
+#include "core/study/point_options.h"
 #include "core/vehicle/vehicle.h"
 
 namespace tribodyn {

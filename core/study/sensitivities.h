@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dynamics/orbit_sensitivity.h"
+#include "core/periodic/orbit_sensitivity.h"
 #include "core/study/scene.h"
 
 namespace tribodyn {

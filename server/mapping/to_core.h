@@ -3,7 +3,7 @@
 #include "core/celsius.h"
 #include "core/contact/flank_contact.h"
 #include "core/gear/gear_set.h"
-#include "core/lubricant/lubricant.h"
+#include "core/laws/lubricant.h"
 #include "core/model_options.h"
 #include "core/study/figure_limits.h"
 #include "core/surface/surface.h"

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/study/screening.h"
 #include "server/contract/resource_names.h"
 #include "server/contract/violations.h"
 #include "server/simulation/point_elasticities.h"

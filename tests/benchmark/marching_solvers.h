@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dynamics/mesh_cycle_march.h"
+#include "core/integrate/mesh_cycle_march.h"
 
 namespace tribodyn {
 

@@ -10,9 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "core/dynamics/period_correction.h"
-#include "core/dynamics/steady_state.h"
+#include "core/periodic/period_correction.h"
+#include "core/periodic/steady_state.h"
 #include "core/study/operating_point.h"
+#include "core/study/screening.h"
 #include "core/vehicle/vehicle.h"
 #include "tests/benchmark/marching_solvers.h"
 #include "tests/benchmark/measurements.h"

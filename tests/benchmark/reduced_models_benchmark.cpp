@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/study/operating_point.h"
+#include "core/study/screening.h"
 #include "tests/benchmark/measurements.h"
 #include "tests/support/figure_error.h"
 #include "tests/support/reference_scene.h"

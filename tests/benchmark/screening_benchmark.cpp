@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/study/screening.h"
 #include "core/study/speed_sweep.h"
 #include "tests/benchmark/measurements.h"
 #include "tests/support/contact_batch.h"

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "core/dynamics/mesh_cycle_march.h"
+#include "core/integrate/mesh_cycle_march.h"
 #include "core/study/operating_point.h"
 #include "tests/consistency/contact_case.h"
 #include "tests/support/cruise.h"
@@ -299,9 +299,9 @@ TEST(TransmissionErrorIdentities, MarchedCyclesDoNotWindUp) {
   MarchState y = resume<MarchState>(bench, point);
   const MarchScales scales = march_scales(bench.system, point.mean_pinion_speed);
   const double start = y[kWinding];
-  MarchStatistics statistics;
+  SolverWork work;
   constexpr int kCycles = kShortRun ? 20 : 1000;
-  for (int i = 0; i < kCycles; ++i) march_mesh_cycle(bench.system, scales, {}, y, statistics);
+  for (int i = 0; i < kCycles; ++i) march_mesh_cycle(bench.system, scales, {}, y, work);
   // The speed may drift with the torque's last digits, the flanks may not part from each other.
   EXPECT_NEAR(y[kWinding], start, 1e-3 * scales.length);
 }
@@ -327,7 +327,7 @@ Works works_of_ten_cycles(Bench& bench, const PointResult& point, Disturb distur
   const double before = stored_energy(bench.scene.gear_set, 0, y.data());
   for (int cycle = 0; cycle < 10; ++cycle) {
     Phases phases(bench.system, scales);
-    EventExactMarch<Phases> march(phases, options);
+    DormandPrinceWithEvents<Phases> march(phases, options);
     double phase = 0;
     march.run(phase, y, 1.0);
   }

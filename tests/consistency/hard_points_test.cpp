@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dynamics/gear_pair_system.h"
+#include "core/driveline/gear_pair_system.h"
 #include "core/gear/mesh_data.h"
 #include "core/refusal.h"
 #include "core/study/operating_point.h"
@@ -574,7 +574,7 @@ TEST(HardPoints, RandomGearSetsAndFluids) {
   RecordProperty("seed", std::to_string(seed));
   std::mt19937_64 random(seed);
   const int count = full_run() ? 1000 : kShortRun ? 5 : 50;
-  int right = 0, above = 0, wrong = 0, vanished = 0, marched = 0, unsettled = 0, refused = 0,
+  int right = 0, above = 0, wrong = 0, vanished = 0, marched = 0, picard_error = 0, refused = 0,
       untold = 0;
   for (int i = 0; i < count; ++i) {
     const WildPlace place = wild_place(random);
@@ -586,7 +586,7 @@ TEST(HardPoints, RandomGearSetsAndFluids) {
       const PointResult r = solve_operating_point(place.scene, place.condition, options);
       expect_sound(place.scene, r, options);
       if (!r.settled) {
-        ++unsettled;
+        ++picard_error;
         EXPECT_FALSE(r.estimated_relative_error.has_value());
         continue;
       }
@@ -623,7 +623,7 @@ TEST(HardPoints, RandomGearSetsAndFluids) {
     }
   }
   std::cout << count << " scenes: " << right << " right by the march, " << above
-            << " err more than estimated, " << marched << " marched, " << unsettled
+            << " err more than estimated, " << marched << " marched, " << picard_error
             << " do not settle and say so, " << refused << " refused, " << untold
             << " of which the march tells nothing\n";
   // 1 % of many; a few scenes scatter.

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/dynamics/mesh_cycle_march.h"
+#include "core/integrate/mesh_cycle_march.h"
 #include "tests/support/paths.h"
 #include "tests/support/reference_scene.h"
 #include "tests/support/run_length.h"
@@ -29,7 +29,7 @@ constexpr int kCoarseTables = 8;  ///< samples between those that are kept: 12 i
 
 struct Outcome {
   MarchState state{};  ///< time and work of all cycles
-  MarchStatistics statistics;
+  SolverWork work;
   MarchScales scales{};
 };
 
@@ -95,7 +95,7 @@ class OrderTest : public testing::Test {
     options.maximum_step = maximum_step;
     double time = 0, work = 0;
     for (int cycle = 0; cycle < problem.mesh_cycles; ++cycle) {
-      march_mesh_cycle(system, out.scales, options, out.state, out.statistics);
+      march_mesh_cycle(system, out.scales, options, out.state, out.work);
       time += out.state[kTime];
       work += out.state[kLossWork];
     }
@@ -187,14 +187,14 @@ class OrderTest : public testing::Test {
   void expect_fifth_order_of_steps_by_tolerance(const std::vector<InitialValueProblem>& problems,
                                                 long least_events) const {
     const std::vector<Outcome> exact = references(problems);
-    for (const Outcome& one : exact) EXPECT_GE(one.statistics.events, least_events);
+    for (const Outcome& one : exact) EXPECT_GE(one.work.events, least_events);
     const double count = static_cast<double>(problems.size());
     expect_fifth_order([&](int i) {
       const double tolerance = 1e-2 * std::pow(2, -1.25 * i);
       MeanErrors mean;
       for (std::size_t k = 0; k < problems.size(); ++k) {
         const Outcome outcome = march(problems[k], tolerance);
-        mean.log_steps += std::log(outcome.statistics.accepted_steps) / count;
+        mean.log_steps += std::log(outcome.work.accepted_steps) / count;
         add(outcome, exact[k], tolerance, count, mean);
       }
       return mean;
@@ -205,7 +205,7 @@ class OrderTest : public testing::Test {
   /// falls as m^-5 and sees to it).
   void expect_fifth_order_of_even_steps(const std::vector<InitialValueProblem>& problems) const {
     const std::vector<Outcome> exact = references(problems);
-    for (const Outcome& one : exact) EXPECT_EQ(one.statistics.events, 0);
+    for (const Outcome& one : exact) EXPECT_EQ(one.work.events, 0);
     const double count = static_cast<double>(problems.size());
     expect_fifth_order([&](int i) {
       const double even = std::round(3 * std::pow(1.25, i));
@@ -311,7 +311,7 @@ TEST_F(OrderTest, EndsWhereAnIndependentIntegratorEndsAfterLosses) {
 TEST_F(OrderTest, ViolentImpactsIntoTheLimitingStressKeepTheErrorNearTheTolerance) {
   const InitialValueProblem violent{5, 17, 20e-6, 2};
   const Outcome reference = march(violent, 1e-13);
-  EXPECT_GT(reference.statistics.events, 9);
+  EXPECT_GT(reference.work.events, 9);
   for (const double tolerance : {1e-5, 1e-7, 1e-9}) {
     const Errors e = errors(march(violent, tolerance), reference);
     EXPECT_LT(e.state, 300 * tolerance) << tolerance;

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "core/contact/hertz.h"
-#include "core/dynamics/orbit_solver.h"
-#include "core/dynamics/steady_state.h"
+#include "core/periodic/orbit_solver.h"
+#include "core/periodic/steady_state.h"
 #include "core/refusal.h"
 #include "core/study/operating_point.h"
 #include "core/study/operating_target.h"
@@ -87,14 +87,15 @@ struct OrbitOnGrid {
                                    scene.sump_temperature, scene.inlet_temperature_rise,
                                    scene.options)),
         system(mesh, contacts.model(), scene.gear_set.dynamics, scene.options),
-        grid(mesh, scene.gear_set.dynamics.half_backlash, steps,
-             reduced_modulus(scene.solid.youngs_modulus, scene.solid.poissons_ratio),
-             scene.options),
-        solver(system, contacts, statistics, cycles) {
+        grids(mesh, scene.gear_set.dynamics.half_backlash,
+              reduced_modulus(scene.solid.youngs_modulus, scene.solid.poissons_ratio),
+              scene.options),
+        grid(grids.with_steps(steps)),
+        problem{system, contacts, grids, place.target.mean_pinion_speed,
+                place.target.solve_wheel_torque, 1e-5, {}},
+        solver(problem, work) {
     system.set_torques(place.target.torques);
-    request.mean_pinion_speed = place.target.mean_pinion_speed;
-    request.solve_wheel_torque = place.target.solve_wheel_torque;
-    request.keep_contact = in_contact;
+    options.bilateral_contact = in_contact;
   }
 
   /// From the state of a point.
@@ -103,16 +104,16 @@ struct OrbitOnGrid {
     orbit.torques = system.torques();
     orbit.period = point.period_in_mesh_cycles;
     system.to_march(point.section_state, orbit.state.data());
-    const bool near = request.keep_contact && orbit.period == 1
-                          ? solver.approach_without_friction(grid, request, orbit)
-                          : solver.approach_from_near(grid, request, orbit);
+    const bool near = options.bilateral_contact && orbit.period == 1
+                          ? solver.solve_without_friction(grid, options, orbit)
+                          : solver.march_one_period(grid, options, orbit);
     return near && settle(orbit);
   }
   /// From the orbit of a place beside.
   bool follow(PeriodicOrbit& orbit) {
-    (request.solve_wheel_torque ? orbit.torques.pinion : orbit.torques.wheel) =
-        request.solve_wheel_torque ? place.target.torques.pinion : place.target.torques.wheel;
-    orbit.map.reset();
+    (problem.solve_wheel_torque ? orbit.torques.pinion : orbit.torques.wheel) =
+        problem.solve_wheel_torque ? place.target.torques.pinion : place.target.torques.wheel;
+    orbit.jacobian.reset();
     return settle(orbit);
   }
   /// Until friction and motion move no more than rounding lets them.
@@ -120,8 +121,8 @@ struct OrbitOnGrid {
     bool settled = false;
     for (const double tolerance : {1e-6, 1e-9, 1e-10, 1e-10}) {
       PeriodicOrbit next = orbit;
-      request.tolerance = tolerance;
-      if (!solver.solve(grid, request, next)) break;
+      options.tolerance = tolerance;
+      if (!solver.solve(grid, options, next)) break;
       orbit = std::move(next);
       settled = tolerance <= 1e-9;
     }
@@ -153,11 +154,12 @@ struct OrbitOnGrid {
   MeshData mesh;
   FlankContactBatch contacts;
   GearPairSystem system;
-  MeshGrid grid;
-  MarchStatistics statistics;
-  long cycles = 0;
+  MeshGrids grids;
+  const MeshGrid& grid;
+  SolverWork work;
+  PeriodicProblem problem;
   OrbitSolver solver;
-  OrbitRequest request;
+  ShootingOptions options;
 };
 
 /// By parameter and figure; of the extremes of the transmission error by the larger one.
@@ -207,9 +209,7 @@ std::optional<ElasticityComparison> compare_elasticities(const DifferentiatedPla
   PeriodicOrbit orbit;
   if (!bench.find(point, orbit)) return std::nullopt;
   const auto base = bench.figures(orbit);
-  const auto sensitivity =
-      orbit_sensitivity(bench.system, bench.grid, bench.contacts, orbit,
-                        at.target.mean_pinion_speed, at.target.solve_wheel_torque);
+  const auto sensitivity = orbit_sensitivity(bench.problem, orbit);
   if (!base || !sensitivity) return std::nullopt;
   ElasticityComparison out;
   out.one_sided = sensitivity->one_sided;

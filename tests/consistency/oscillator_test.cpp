@@ -9,8 +9,8 @@
 #include <numbers>
 #include <vector>
 
-#include "core/dynamics/event_exact_march.h"
-#include "core/dynamics/graded_piece.h"
+#include "core/integrate/dormand_prince_with_events.h"
+#include "core/integrate/graded_phase.h"
 #include "tests/support/reference_data.h"
 
 namespace tribodyn {
@@ -43,7 +43,7 @@ struct Harmonic : PlaneSystem {
 TEST(March, HarmonicOscillatorAtFifthOrderAndFourthOrderBetweenSteps) {
   const auto errors_at = [](double step_length) {
     Harmonic system;
-    EventExactMarch<Harmonic> march(system, steps_of(1e300, step_length));
+    DormandPrinceWithEvents<Harmonic> march(system, steps_of(1e300, step_length));
     double s = 0, between = 0;
     Harmonic::State y{1, 0};
     const double end = 4 * std::numbers::pi;
@@ -54,8 +54,8 @@ TEST(March, HarmonicOscillatorAtFifthOrderAndFourthOrderBetweenSteps) {
       }
     });
     EXPECT_EQ(s, end);
-    EXPECT_EQ(march.statistics().rejected_steps, 0);
-    EXPECT_EQ(march.statistics().right_hand_sides, 6 * march.statistics().accepted_steps + 1);
+    EXPECT_EQ(march.work().rejected_steps, 0);
+    EXPECT_EQ(march.work().right_hand_sides, 6 * march.work().accepted_steps + 1);
     return std::array<double, 2>{std::hypot(y[0] - 1, y[1]), between};
   };
   const auto coarse = errors_at(4 * std::numbers::pi / 50), fine = errors_at(std::numbers::pi / 50);
@@ -66,7 +66,7 @@ TEST(March, HarmonicOscillatorAtFifthOrderAndFourthOrderBetweenSteps) {
 TEST(March, ErrorOfTheHarmonicOscillatorIsInProportionToTheTolerance) {
   for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
     Harmonic system;
-    EventExactMarch<Harmonic> march(system, steps_of(tolerance));
+    DormandPrinceWithEvents<Harmonic> march(system, steps_of(tolerance));
     double s = 0;
     Harmonic::State y{1, 0};
     march.run(s, y, 20 * std::numbers::pi);
@@ -94,7 +94,7 @@ struct BallOnSpring : PlaneSystem {
 TEST(March, BouncingBallMeetsTheFloorAtTheExactTimes) {
   for (const double maximum_step : {kNever, 0.013}) {
     BallOnSpring system;
-    EventExactMarch<BallOnSpring> march(system, steps_of(1e-12, maximum_step));
+    DormandPrinceWithEvents<BallOnSpring> march(system, steps_of(1e-12, maximum_step));
     double s = 0;
     BallOnSpring::State y{1, 0};
     march.run(s, y, 10);
@@ -104,7 +104,7 @@ TEST(March, BouncingBallMeetsTheFloorAtTheExactTimes) {
     const double contact =
         2 / omega * (std::numbers::pi - std::atan(speed * omega / BallOnSpring::kGravity));
     ASSERT_GE(system.times.size(), 20u);
-    EXPECT_EQ(march.statistics().events, static_cast<long>(system.times.size()));
+    EXPECT_EQ(march.work().events, static_cast<long>(system.times.size()));
     for (std::size_t n = 0; n < system.times.size(); ++n) {
       const std::size_t bounces_before = n / 2;
       const double bounces = static_cast<double>(bounces_before);
@@ -138,7 +138,7 @@ TEST(March, GrazingIsFoundOrDoesNoHarm) {
       const double depth = std::pow(10, -decade);
       Grazing system;
       system.wall = 1 - depth;
-      EventExactMarch<Grazing> march(system, steps_of(tolerance));
+      DormandPrinceWithEvents<Grazing> march(system, steps_of(tolerance));
       // From the middle with speed 1: outside the wall a quarter turn and back, inside about
       // x = wall/2 with twice the stiffness.
       const double speed = std::sqrt(1 - system.wall * system.wall);
@@ -161,11 +161,11 @@ TEST(March, GrazingIsFoundOrDoesNoHarm) {
 TEST(March, TouchingWithoutCrossingIsNoEvent) {
   Grazing system;
   system.wall = 1 + 1e-6;
-  EventExactMarch<Grazing> march(system, steps_of(1e-9));
+  DormandPrinceWithEvents<Grazing> march(system, steps_of(1e-9));
   double s = 0;
   Grazing::State y{0, 1};
   march.run(s, y, 100);
-  EXPECT_EQ(march.statistics().events, 0);
+  EXPECT_EQ(march.work().events, 0);
 }
 
 /// y' = (1 - s)^0.74 up to an event at s = 1, where the rate jumps: what a load that comes to zero
@@ -194,7 +194,7 @@ double error_at_corner(double tolerance) {
   double worst = 0;
   for (int i = 0; i < 50; ++i) {
     EndsInCorner<kTold> system;
-    EventExactMarch<EndsInCorner<kTold>> march(system, steps_of(tolerance));
+    DormandPrinceWithEvents<EndsInCorner<kTold>> march(system, steps_of(tolerance));
     const double start = -0.02 * i;
     double s = start;
     typename EndsInCorner<kTold>::State y{0};
@@ -215,7 +215,7 @@ TEST(March, EventsAtCornersOfFractionalPowersKeepTheErrorInProportionToTheTolera
 struct Graded {
   static constexpr int kSize = 2, kEvents = 1;
   using State = std::array<double, kSize>;
-  GradedPiece piece;
+  GradedPhase piece;
   bool at_start, at_end;
   void derivative(double progress, const State&, State& dy) const {
     const double phase = piece.phase(progress), slope = piece.slope(progress);
@@ -241,9 +241,9 @@ TEST(March, GradedPiecesKeepTheFifthOrderOfEvenStepsAtCornersInKnownPlaces) {
       std::pow(0.5, 2.48) * std::tgamma(1.74) * std::tgamma(1.74) / std::tgamma(3.48);
   for (const Case c : {Case{true, false, one}, {false, true, one}, {true, true, both}}) {
     const auto error = [&](double steps, bool graded) {
-      const GradedPiece piece(0.7, 1, 1.5, graded && c.at_start, graded && c.at_end);
+      const GradedPhase piece(0.7, 1, 1.5, graded && c.at_start, graded && c.at_end);
       Graded system{piece, c.at_start, c.at_end};
-      EventExactMarch<Graded> march(system, steps_of(1e300, 0.8 / steps * (1 + 1e-12)));
+      DormandPrinceWithEvents<Graded> march(system, steps_of(1e300, 0.8 / steps * (1 + 1e-12)));
       double progress = 0.7;
       Graded::State y{0, 0};
       march.run(progress, y, 1.5);
@@ -258,7 +258,7 @@ TEST(March, GradedPiecesKeepTheFifthOrderOfEvenStepsAtCornersInKnownPlaces) {
 TEST(March, PhaseAndProgressOfAGradedPieceAreEachOthersInverse) {
   for (const bool at_start : {false, true}) {
     for (const bool at_end : {false, true}) {
-      const GradedPiece piece(0.7, 1, 1.5, at_start, at_end);
+      const GradedPhase piece(0.7, 1, 1.5, at_start, at_end);
       EXPECT_EQ(piece.phase(1.5), 1.5);
       EXPECT_EQ(piece.phase(0.7), 1);
       for (const double phase : {1.0, 1.001, 1.1, 1.25, 1.4, 1.499, 1.5}) {
@@ -283,7 +283,7 @@ struct Undefined : PlaneSystem {
 
 TEST(March, NoStepIsTakenOnNotANumber) {
   Undefined system;
-  EventExactMarch<Undefined> march(system, steps_of(1e-6));
+  DormandPrinceWithEvents<Undefined> march(system, steps_of(1e-6));
   double s = 0;
   Undefined::State y{0, 0};
   try {
@@ -331,7 +331,7 @@ class KahramanSingh : public testing::Test {
     system_.frequency = frequency;
     Range range;
     for (int period = 0; period < periods; ++period) {
-      EventExactMarch<GearOscillator> march(system_, steps_of(1e-10));
+      DormandPrinceWithEvents<GearOscillator> march(system_, steps_of(1e-10));
       double t = 0;
       march.run(t, state_, 2 * std::numbers::pi / frequency, [&](const MarchStep<2>& step) {
         // Inside a step x turns where v = 0.

@@ -14,11 +14,12 @@
 #include <string>
 #include <vector>
 
-#include "core/dynamics/linear_response.h"
+#include "core/reduced/linear_response.h"
+#include "core/reduced/quasi_static.h"
 #include "core/refusal.h"
-#include "core/study/model_choice.h"
 #include "core/study/operating_point.h"
-#include "core/study/quasi_static.h"
+#include "core/study/quasi_static_point.h"
+#include "core/study/screening.h"
 #include "core/study/speed_sweep.h"
 #include "tests/support/cruise.h"
 #include "tests/support/figure_error.h"
@@ -111,18 +112,18 @@ TEST(QuasiStatic, IsWhatPhaseByPhaseGivesWithinItsOwnEstimateAtEveryTolerance) {
         options.tolerance = tolerance;
         const OperatingTarget target = target_of(scene, cruise(kilometres_per_hour));
         system.set_torques(target.torques);
-        const auto r = solve_quasi_static(system, prepared.contacts(), gear_set.grids(),
-                                          quasi_static_request(target, options));
+        const auto r = solve_quasi_static(
+            quasi_static_problem({system, prepared.contacts(), gear_set, target, options}));
         ASSERT_TRUE(r.has_value());
-        EXPECT_LE(r->discretisation_error, 0.5 * tolerance);
-        const double torque = r->orbit.figures.torque;
-        const double rms = 100 * r->orbit.figures.loss_rms / torque;
-        const double energy = 100 * r->orbit.figures.loss_energy / (torque * system.cycle_angle());
+        EXPECT_LE(r->estimated_error, 0.5 * tolerance);
+        const double torque = r->figures.torque;
+        const double rms = 100 * r->figures.loss_rms / torque;
+        const double energy = 100 * r->figures.loss_energy / (torque * system.cycle_angle());
         const double error =
             std::max({std::abs(torque / plain.pinion_torque - 1), std::abs(rms / plain.rms - 1),
                       std::abs(energy / plain.energy_mean - 1)});
         // Two Gauss points an interval are good to a millionth.
-        EXPECT_LT(error, r->discretisation_error + 1e-6);
+        EXPECT_LT(error, r->estimated_error + 1e-6);
       }
     }
   }

@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "core/contact/hertz.h"
-#include "core/dynamics/fixed_step_march.h"
-#include "core/dynamics/steady_state.h"
+#include "core/integrate/rk4_with_events.h"
+#include "core/periodic/poincare_map_jacobian.h"
+#include "core/periodic/steady_state.h"
 #include "core/study/operating_point.h"
 #include "tests/support/cruise.h"
 #include "tests/support/reference_scene.h"
@@ -31,7 +32,7 @@ void PrintTo(const GapCase& c, std::ostream* out) { *out << c.name; }
 class GapMarch {
  public:
   static constexpr double kSpeed = 230;  // of the pinion [rad/s]
-  static constexpr int kSteps = 384, kPeriod = 2, kUnknowns = SectionMap::kUnknowns;
+  static constexpr int kSteps = 384, kPeriod = 2, kUnknowns = PoincareMapJacobian::kUnknowns;
   using Derivatives = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
   explicit GapMarch(const GapCase& c)
@@ -113,7 +114,7 @@ class GapMarch {
   MarchState end_of(MarchState y, const Torques& torques, Sensitivity* sensitivity) {
     system_.set_torques(torques);
     system_.regime = system_.regime_of(0, y.data());
-    FixedStepMarch march(system_, scales_, grid_, kPeriod, false, 1e-12, InstructionSet::kPortable);
+    Rk4WithEvents march(system_, scales_, grid_, kPeriod, false, 1e-12, InstructionSet::kPortable);
     EXPECT_TRUE(march.run(friction_, false, y, sensitivity, &pieces_));
     return y;
   }
@@ -124,7 +125,7 @@ class GapMarch {
   GearPairSystem system_;
   MeshGrid grid_;
   MarchScales scales_;
-  LaggedFriction friction_;
+  FrozenFriction friction_;
   MarchState start_;
   std::vector<OrbitPiece> pieces_;
 };

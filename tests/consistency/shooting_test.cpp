@@ -13,6 +13,7 @@
 
 #include "core/refusal.h"
 #include "core/study/operating_point.h"
+#include "core/study/screening.h"
 #include "core/study/speed_sweep.h"
 #include "tests/support/cruise.h"
 #include "tests/support/figure_error.h"

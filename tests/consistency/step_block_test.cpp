@@ -1,4 +1,4 @@
-#include "core/dynamics/step_block.h"
+#include "core/integrate/step_block.h"
 
 #include <gtest/gtest.h>
 
@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "core/contact/hertz.h"
-#include "core/dynamics/fixed_step_march.h"
-#include "core/dynamics/multiple_shooting.h"
-#include "core/dynamics/orbit_solver.h"
-#include "core/dynamics/single_shooting.h"
-#include "core/dynamics/steady_state.h"
+#include "core/integrate/rk4_with_events.h"
+#include "core/periodic/multiple_shooting.h"
+#include "core/periodic/orbit_solver.h"
+#include "core/periodic/single_shooting.h"
+#include "core/periodic/steady_state.h"
 #include "tests/support/contact_batch.h"
 #include "tests/support/reference_scene.h"
 
@@ -56,15 +56,15 @@ struct PointBench {
     }
     start = static_start(system, kSpeed, 0, 0, 0);
     const MarchScales scales = march_scales(system, kSpeed);
-    FixedStepMarch march(system, scales, grid, 1, solve_wheel_torque, 1e-9,
-                         InstructionSet::kPortable);
+    Rk4WithEvents march(system, scales, grid, 1, solve_wheel_torque, 1e-9,
+                        InstructionSet::kPortable);
     MarchState y = start;
     marched = march.run(friction, true, y, &sensitivity, &pieces);
     for (Columns* columns : {&lagged.start, &lagged.middle}) {
       columns->resize(kFrictionRows, steps + 1);
     }
     for (int n = 0; n <= 2 * steps; ++n) {
-      const FrictionPerLoad at = friction.at(0.5 * n / steps);
+      const FrictionArms at = friction.at(0.5 * n / steps);
       Columns& to = n % 2 == 0 ? lagged.start : lagged.middle;
       to[kPinionFrictionRow][n / 2] = at.pinion;
       to[kGearFrictionRow][n / 2] = at.gear;
@@ -91,7 +91,7 @@ struct PointBench {
   GearPairSystem system;
   MeshGrid grid;
   bool solve_wheel_torque;
-  LaggedFriction friction;
+  FrozenFriction friction;
   MarchState start;
   Sensitivity sensitivity;
   std::vector<OrbitPiece> pieces;
@@ -370,16 +370,17 @@ struct OrbitBench {
         grids(mesh, scene.gear_set.dynamics.half_backlash,
               reduced_modulus(scene.solid.youngs_modulus, scene.solid.poissons_ratio),
               scene.options),
-        solver(system, batch, statistics, cycles) {
+        problem{system, batch, grids, 0, false, 1e-5, {}},
+        solver(problem, work) {
     aim(pinion_torque, pinion_speed, wheel_torque);
   }
 
   void aim(double pinion_torque, double pinion_speed, bool wheel_torque) {
-    request = {};
-    request.mean_pinion_speed = pinion_speed;
-    request.solve_wheel_torque = wheel_torque;
-    request.keep_contact = true;
-    request.tolerance = 1e-9;  // contacts are solved to 1e-10
+    problem.mean_pinion_speed = pinion_speed;
+    problem.solve_wheel_torque = wheel_torque;
+    options = {};
+    options.bilateral_contact = true;
+    options.tolerance = 1e-9;  // contacts are solved to 1e-10
     origin = {};
     origin.torques = {pinion_torque, pinion_torque * 36 / 13};
     system.set_torques(origin.torques);
@@ -390,21 +391,21 @@ struct OrbitBench {
   bool solve(int steps, PeriodicOrbit& orbit, OrbitSolver& by) {
     const MeshGrid& grid = grids.with_steps(steps);
     orbit = origin;
-    return by.approach_without_friction(grid, request, orbit) && by.solve(grid, request, orbit);
+    return by.solve_without_friction(grid, options, orbit) && by.solve(grid, options, orbit);
   }
 
   /// By one march of the whole cycle after the other.
   PeriodicOrbit alone(int steps) {
     OrbitFriction friction(system, batch);
     PeriodicOrbit orbit = origin;
-    SingleShooting shooting(system, friction, grids.with_steps(steps), request, orbit);
-    EXPECT_TRUE(shooting.converge(1e-3));
-    for (int sweep = 0; sweep < 12; ++sweep) {
+    SingleShooting shooting(problem, friction, grids.with_steps(steps), options, orbit);
+    EXPECT_TRUE(shooting.solve(1e-3));
+    for (int iteration = 0; iteration < 12; ++iteration) {
       EXPECT_TRUE(shooting.evaluate_friction());
-      EXPECT_TRUE(shooting.converge(1e-10));
+      EXPECT_TRUE(shooting.solve(1e-10));
     }
     EXPECT_TRUE(shooting.evaluate_friction());
-    shooting.finish(statistics, cycles);
+    shooting.finish(work);
     return orbit;
   }
 
@@ -414,10 +415,10 @@ struct OrbitBench {
   FlankContactBatch batch;
   GearPairSystem system;
   MeshGrids grids;
-  MarchStatistics statistics;
-  long cycles = 0;
+  SolverWork work;
+  PeriodicProblem problem;
   OrbitSolver solver;
-  OrbitRequest request;
+  ShootingOptions options;
   PeriodicOrbit origin;
 };
 
@@ -436,10 +437,10 @@ void expect_same_bits(const PeriodicOrbit& a, const PeriodicOrbit& b) {
   EXPECT_EQ(a.figures.loss_energy, b.figures.loss_energy);
   EXPECT_EQ(a.figures.dte_minimum, b.figures.dte_minimum);
   EXPECT_EQ(a.figures.dte_maximum, b.figures.dte_maximum);
-  EXPECT_EQ(a.unsettled, b.unsettled);
+  EXPECT_EQ(a.picard_error, b.picard_error);
   EXPECT_EQ(a.contact_loss, b.contact_loss);
   EXPECT_EQ(a.least_pressing_force, b.least_pressing_force);
-  EXPECT_EQ(a.map->largest_multiplier(), b.map->largest_multiplier());
+  EXPECT_EQ(a.jacobian->largest_multiplier(), b.jacobian->largest_multiplier());
   ASSERT_EQ(a.pieces.size(), b.pieces.size());
   for (std::size_t i = 0; i < a.pieces.size(); ++i) {
     EXPECT_TRUE(same_bits(a.pieces[i].middle.data(), b.pieces[i].middle.data(), kWheelSpeed + 1));
@@ -455,14 +456,14 @@ TEST(MultipleShooting, FindsWhatSingleShootingFindsForEitherTorque) {
         OrbitBench bench(torque, speed, wheel);
         PeriodicOrbit together;
         ASSERT_TRUE(
-            MultipleShooting::applies(bench.grids.with_steps(24), bench.request, bench.origin));
+            MultipleShooting::applies(bench.grids.with_steps(24), bench.options, bench.origin));
         ASSERT_TRUE(bench.solve(24, together));
         const PeriodicOrbit alone = bench.alone(24);
         expect_near(together, alone);
-        const double expected = alone.map->largest_multiplier();
-        EXPECT_NEAR(together.map->largest_multiplier(), expected, kNear);
-        EXPECT_TRUE(together.map->multipliers_are_below(1.01 * expected + 0.5 * kNear));
-        EXPECT_FALSE(together.map->multipliers_are_below(0.99 * expected));
+        const double expected = alone.jacobian->largest_multiplier();
+        EXPECT_NEAR(together.jacobian->largest_multiplier(), expected, kNear);
+        EXPECT_TRUE(together.jacobian->floquet_radius_below(1.01 * expected + 0.5 * kNear));
+        EXPECT_FALSE(together.jacobian->floquet_radius_below(0.99 * expected));
       }
     }
   }
@@ -479,14 +480,14 @@ TEST(MultipleShooting, FindsWhatSingleShootingFindsWhereFlanksPull) {
       const MeshGrid& grid = bench.grids.with_steps(48);
       OrbitFriction friction(bench.system, bench.batch);
       CycleStorage storage;
-      MultipleShooting shooting(bench.system, friction, storage, grid, bench.request, orbit);
-      ASSERT_TRUE(shooting.converge(1e-3));
-      for (int sweep = 0; sweep < 12; ++sweep) {
+      MultipleShooting shooting(bench.problem, friction, storage, grid, bench.options, orbit);
+      ASSERT_TRUE(shooting.solve(1e-3));
+      for (int iteration = 0; iteration < 12; ++iteration) {
         ASSERT_TRUE(shooting.evaluate_friction());
-        ASSERT_TRUE(shooting.converge(1e-10));
+        ASSERT_TRUE(shooting.solve(1e-10));
       }
       ASSERT_TRUE(shooting.evaluate_friction());
-      shooting.finish(bench.statistics, bench.cycles);
+      shooting.finish(bench.work);
       const PeriodicOrbit alone = bench.alone(48);
       expect_near(orbit, alone);
       EXPECT_NEAR(orbit.least_pressing_force, alone.least_pressing_force, 1e-3);
@@ -532,8 +533,8 @@ TEST(OrbitSolver, HandsOverTheContactsOfTheResponse) {
     }
   };
   OrbitBench pressed(40, 230), pulled(20.1, 200), parted(20.1, 200);
-  parted.request.keep_contact = false;
-  parted.request.first_cycles = 60;
+  parted.options.bilateral_contact = false;
+  parted.options.first_cycles = 60;
   PeriodicOrbit orbit;
   expect_contacts(pressed, orbit);
   EXPECT_GT(orbit.least_pressing_force, 0);
@@ -551,15 +552,15 @@ TEST(MultipleShooting, GoesOnFromPiecesOfAnotherGrid) {
         SCOPED_TRACE(testing::Message() << "from " << coarse << " to " << fine);
         PeriodicOrbit carried, fresh;
         ASSERT_TRUE(bench.solve(coarse, carried));
-        const long before = bench.statistics.right_hand_sides;
-        ASSERT_TRUE(bench.solver.solve(bench.grids.with_steps(fine), bench.request, carried));
-        const long on_the_way = bench.statistics.right_hand_sides - before;
+        const long before = bench.work.right_hand_sides;
+        ASSERT_TRUE(bench.solver.solve(bench.grids.with_steps(fine), bench.options, carried));
+        const long on_the_way = bench.work.right_hand_sides - before;
         ASSERT_TRUE(bench.solve(fine, fresh));
         EXPECT_EQ(carried.pieces.size(), static_cast<std::size_t>(fine));
         EXPECT_LT(carried.figures.distance(fresh.figures), 1e-8);
         EXPECT_NEAR(carried.torques.pinion, fresh.torques.pinion, 1e-7);
         EXPECT_NEAR(carried.torques.wheel, fresh.torques.wheel, 1e-7);
-        EXPECT_LE(on_the_way, bench.statistics.right_hand_sides - before - on_the_way)
+        EXPECT_LE(on_the_way, bench.work.right_hand_sides - before - on_the_way)
             << "and is not slower for it";
       }
     }
@@ -569,7 +570,7 @@ TEST(MultipleShooting, GoesOnFromPiecesOfAnotherGrid) {
 TEST(OrbitSolver, UsedForManySearchesFindsTheSameBitsAsAFreshOne) {
   struct Search {
     double torque, speed;
-    bool wheel, keep_contact;
+    bool wheel, bilateral_contact;
     int steps;
   };
   OrbitBench reused(40, 230);
@@ -582,8 +583,8 @@ TEST(OrbitSolver, UsedForManySearchesFindsTheSameBitsAsAFreshOne) {
     OrbitBench fresh(at.torque, at.speed, at.wheel);
     reused.aim(at.torque, at.speed, at.wheel);
     for (OrbitBench* bench : {&fresh, &reused}) {
-      bench->request.keep_contact = at.keep_contact;
-      bench->request.first_cycles = at.keep_contact ? 0 : 60;
+      bench->options.bilateral_contact = at.bilateral_contact;
+      bench->options.first_cycles = at.bilateral_contact ? 0 : 60;
     }
     PeriodicOrbit a, b;
     ASSERT_TRUE(fresh.solve(at.steps, a));

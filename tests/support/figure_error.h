@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/study/operating_point.h"
+#include "core/study/screening.h"
 
 namespace tribodyn {
 

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "core/celsius.h"
-#include "core/lubricant/lubricant.h"
+#include "core/laws/lubricant.h"
 
 namespace tribodyn {
 

@@ -2,7 +2,7 @@
 
 #include <new>
 
-#include "core/dynamics/mesh_cycle_march.h"
+#include "core/integrate/mesh_cycle_march.h"
 #include "core/study/operating_point.h"
 #include "tests/consistency/allocation/counted_new.h"
 #include "tests/support/contact_batch.h"
@@ -72,15 +72,15 @@ TEST_P(Allocation, NoneInTheRightHandSide) {
 }
 
 TEST_P(Allocation, NoneInAMeshCycle) {
-  MarchStatistics statistics;
+  SolverWork work;
   const MarchOptions options;
-  march_mesh_cycle(system_, scales_, options, state_, statistics);
+  march_mesh_cycle(system_, scales_, options, state_, work);
   for (int i = 0; i < 5; ++i) {
     EXPECT_EQ(
-        allocations_of([&] { march_mesh_cycle(system_, scales_, options, state_, statistics); }),
+        allocations_of([&] { march_mesh_cycle(system_, scales_, options, state_, work); }),
         0);
   }
-  EXPECT_EQ(statistics.events > 0, GetParam() < 80);
+  EXPECT_EQ(work.events > 0, GetParam() < 80);
 }
 
 TEST_P(Allocation, NoneInARefusedContact) {

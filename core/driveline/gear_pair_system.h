@@ -1,0 +1,308 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "core/contact/flank_contact_batch.h"
+#include "core/driveline/section_state.h"
+#include "core/gear/mesh_data.h"
+#include "core/model_options.h"
+
+namespace tribodyn {
+
+/// State of the march over mesh phase. The pinion angle is the independent variable, so that the
+/// samples of the tooth contact tables and the mesh cycle fall on known places; time is a
+/// component. Twists and the winding are differences of angles and stay small.
+enum MarchComponent {
+  kTime,              ///< [s] since the section
+  kPinionShaftTwist,  ///< phi_s - phi_p [rad]
+  kWinding,           ///< R_p0 phi_p - R_g0 phi_g [m]
+  kGearShaftTwist,    ///< phi_g - phi_w [rad]
+  kPinionShaftSpeed,  ///< [rad/s]
+  kPinionSpeed,
+  kGearSpeed,
+  kWheelSpeed,
+  kLossWork,  ///< int sum V_s F_fr dt [J]
+  /// int (sum V_s F_fr / input_speed())^2 dt [(N m)^2 s]: eq 30's RMS but for the torque
+  kLossShareSquared,
+  kMarchComponents
+};
+
+using MarchState = std::array<double, kMarchComponents>;
+
+/// Integrals that only a recorded march carries, after the components above.
+enum RecordComponent {
+  kFlankViscousWork0 = kMarchComponents,  ///< one per slot [J]
+  kFlankBoundaryWork0 = kFlankViscousWork0 + kFlankPairs,
+  kFlankLoadTime0 = kFlankBoundaryWork0 + kFlankPairs,       ///< one per slot: int W dt [N s]
+  kFlankFrictionTime0 = kFlankLoadTime0 + kFlankPairs,       ///< one per slot: int F_fr dt [N s]
+  kViscousForceSquared = kFlankFrictionTime0 + kFlankPairs,  ///< [N2 s]
+  kBoundaryForceSquared,
+  kTransmissionErrorTime,  ///< int x dt
+  kMeshForceTime,
+  kPinionFrictionTorqueTime,
+  kGearFrictionTorqueTime,
+  kLoadTime,  ///< int sum W dt, weight of the following
+  kFilmLoadTime,
+  kFilmRatioLoadTime,
+  kTemperatureLoadTime,
+  kPressureLoadTime,
+  kShearRateLoadTime,
+  kFlashLoadTime,
+  kPinionSlidingLoadTime,
+  kGearSlidingLoadTime,
+  kLimitedAreaLoadTime,
+  kLimitedCentreTime,
+  kGapTime,
+  kCoastTime,
+  kPinionShaftAngle,  ///< int phidot_s dt
+  kWheelAngle,
+  kShaftDampingWork,
+  kMeshDampingWork,
+  kParametricWork,
+  kRecordComponents
+};
+
+/// Which flanks touch. `loaded` is false where c xdot pulls the mesh force below zero: the flanks
+/// still touch, the friction is off.
+struct ContactRegime {
+  int side = 1;  ///< +1 drive flanks, 0 gap, -1 coast flanks
+  bool loaded = true;
+  /// What presses the flanks together under a mesh force [N]: what the contacts share.
+  double load(double mesh_force) const {
+    return side != 0 && loaded ? std::max(0.0, side * mesh_force) : 0;
+  }
+};
+
+template <class Real>
+struct TorquesOf {
+  Real pinion = 0;  ///< T_s [N m]
+  Real wheel = 0;   ///< T_w [N m]
+};
+using Torques = TorquesOf<double>;
+
+/// The power that comes in, which eq 30 divides by, as a torque at the pinion [N m]. In drive power
+/// comes in at the pinion: T_s. In coast (T_s < 0) it comes in at the wheel: -T_w
+/// phidot_w/phidot_s. Where friction takes all of the power it comes in at both.
+/// `wheel_per_pinion_speed`: phidot_w/phidot_s.
+inline double input_torque(const Torques& torques, double wheel_per_pinion_speed) {
+  return std::max(torques.pinion, 0.0) + std::max(-torques.wheel * wheel_per_pinion_speed, 0.0);
+}
+
+/// Forces and torques at one instant. Real: double, or a dual number (core/numerics/dual-inl.h).
+template <class Real>
+struct MechanicsOf {
+  MeshFunctionsOf<Real> mesh;
+  Real deflection;             ///< f [m]
+  Real transmission_error;     ///< x [m]
+  Real transmission_velocity;  ///< xdot [m/s]
+  Real mesh_force;             ///< k_m f + c xdot [N]; of which the damper:
+  Real damper_force;
+  Real pinion_shaft_torque;  ///< [N m]
+  Real gear_shaft_torque;
+  Real pinion_friction_torque;
+  Real gear_friction_torque;
+  Real loss_power;  ///< sum V_s F_fr [W]
+  /// What eq 2 leaves out: F e' - k_m' f^2/2 [N m].
+  Real parametric_torque() const {
+    return mesh_force * mesh.static_transmission_error_slope -
+           0.5 * mesh.mesh_stiffness_slope * deflection * deflection;
+  }
+};
+using Mechanics = MechanicsOf<double>;
+
+/// Everything at one instant, for records and histories.
+struct Instant : Mechanics {
+  std::array<double, kFlankPairs> load{};
+  std::array<FlankMotion, kFlankPairs> motion{};
+  std::array<ContactFigures, kFlankPairs> contact{};
+};
+
+/// Eqs 1-11 with friction (eqs 28, 29) in the loop. One instance per march: it carries the regime.
+/// Evaluation allocates nothing and throws nothing; a contact that is refused is remembered.
+class GearPairSystem {
+ public:
+  /// Keeps references: mesh, contact and dynamics must outlive it.
+  GearPairSystem(const MeshData& mesh, const FlankContactModel& contact,
+                 const DrivelineDynamics& dynamics, const ModelOptions& options);
+
+  /// The contacts of an instant are solved together from now on; null: one by one, by the
+  /// reference. Figures that no record holds are left out. Keeps the reference.
+  void solve_together(const FlankContactBatch* contacts);
+
+  void set_torques(const Torques& torques) { torques_ = torques; }
+  const Torques& torques() const { return torques_; }
+  /// Speed of the shaft at which power comes in (input_torque()), referred to the pinion [rad/s]:
+  /// phidot_s, in coast phidot_w N_g/N_p.
+  double input_speed(double pinion_shaft_speed, double wheel_speed) const {
+    return torques_.pinion < 0 ? wheel_speed * mesh_.gear_teeth() / mesh_.pinion_teeth()
+                               : pinion_shaft_speed;
+  }
+  /// Table interval that the mesh phase is in; phases are continued by its straight lines.
+  void set_interval(int interval) { interval_ = interval; }
+  int interval() const { return interval_; }
+  ContactRegime regime;
+
+  /// Regime that a state is in by its x and xdot.
+  ContactRegime regime_of(double phase, const double* state) const;
+  /// Positive once it has happened: flanks part, or meet on the drive side; the load ends or
+  /// begins, or flanks meet on the coast side. Over a length and a force.
+  std::array<double, 2> events(const MeshPhase& phase, const double* state, double length,
+                               double force) const;
+  /// Into the regime after event 0 or 1. True where the load of touching flanks begins.
+  bool change_regime(int event, const MeshPhase& phase, const double* state);
+  /// x, mesh force and shaft torques, without friction.
+  void mechanics(double phase, const double* state, Mechanics& out) const {
+    mechanics(at_phase(phase), state, out);
+  }
+  template <class Real>
+  void mechanics(const MeshPhase& phase, const Real* state, MechanicsOf<Real>& out) const;
+  /// All of eqs 1-11 and the friction of each loaded flank at mesh phase [cycles]. Counts contacts.
+  void evaluate(double phase, const double* state, Instant& out);
+  /// Loaded flanks of eqs 2 and 3: what the contact of flank pair k sees under `load` [N] of its
+  /// own in a state, and its sliding and arms.
+  ContactConditions contact_conditions(const FlankKinematics& flank, double load,
+                                       const double* state, FlankMotion& motion) const;
+  /// d state / d phase of time and the seven states of motion.
+  void motion(const double* state, const Mechanics& at, double* derivative) const {
+    motion(state, at, torques_, derivative);
+  }
+  /// The same under other torques.
+  template <class Real>
+  void motion(const Real* state, const MechanicsOf<Real>& at, const TorquesOf<Real>& torques,
+              Real* derivative) const;
+  /// d state / d phase of the first kMarchComponents from an instant, and of the record if asked.
+  void derivative(const double* state, const Instant& at, bool record, double* derivative) const;
+  /// x and mesh force without friction: for events.
+  void kinematics(double phase, const double* state, Mechanics& out) const {
+    kinematics(at_phase(phase), state, out);
+  }
+  template <class Real>
+  void kinematics(const MeshPhase& phase, const Real* state, MechanicsOf<Real>& out) const;
+  /// dR_g/d winding [-].
+  double gear_radius_by_winding(const MeshPhase& phase, double winding) const {
+    return lag_per_winding_ * mesh_.gear_radius_by_lag(phase, lag_per_winding_ * winding);
+  }
+  /// Mesh phase [cycles].
+  MeshPhase at_phase(double phase) const;
+
+  double cycle_angle() const { return cycle_angle_; }  ///< phi_p per mesh cycle, 2 pi/N_p
+  void to_march(const SectionState& section, double* state) const;
+  SectionState to_section(const double* state) const;
+  /// Kinetic and elastic energy [J].
+  double stored_energy(double phase, const double* state) const;
+
+  const MeshData& mesh() const { return mesh_; }
+  const DrivelineDynamics& dynamics() const { return dynamics_; }
+  const FlankContactModel& contact_model() const { return contact_; }
+  const ModelOptions& options() const { return options_; }
+  long contact_solutions() const { return contact_solutions_; }
+  /// Contacts of this system that were solved elsewhere, and the refusal of one.
+  void count_contacts(long solved) { contact_solutions_ += solved; }
+  void refuse(ContactStatus status) {
+    if (refusal_ == ContactStatus::kOk) refusal_ = status;
+  }
+  /// kOk, or the first refusal met since it was taken.
+  ContactStatus refusal() const { return refusal_; }
+  ContactStatus take_refusal() { return std::exchange(refusal_, ContactStatus::kOk); }
+
+ private:
+  void solve_contacts(const std::array<ContactConditions, kFlankPairs>& conditions, Instant& out);
+
+  const MeshData& mesh_;
+  const FlankContactModel& contact_;
+  const FlankContactBatch* together_ = nullptr;
+  std::optional<ContactGeometries> geometries_;
+  const DrivelineDynamics& dynamics_;
+  ModelOptions options_;
+  Torques torques_;
+  struct Inverse {
+    double pinion_shaft_inertia, pinion_inertia, gear_inertia, wheel_inertia;
+  } inverse_;
+  double lag_per_winding_;  // of N_g phi_g behind N_p phi_p [rad/m]
+  double cycle_angle_;
+  int interval_ = 0;
+  long contact_solutions_ = 0;
+  ContactStatus refusal_ = ContactStatus::kOk;
+};
+
+template <class Real>
+void GearPairSystem::kinematics(const MeshPhase& phase, const Real* y,
+                                MechanicsOf<Real>& out) const {
+  // N_g phi_g = N_p phi_p - N_g winding/R_g0, because R_g0 N_p = R_p0 N_g.
+  out.mesh = mesh_.functions(phase, lag_per_winding_ * y[kWinding]);
+  const MeshFunctionsOf<Real>& m = out.mesh;
+  const double b = dynamics_.half_backlash;
+  out.transmission_error =
+      b + y[kWinding] + m.radius_integral - m.static_transmission_error;  // (eq 6)
+  out.transmission_velocity =
+      (m.pinion_contact_radius - m.static_transmission_error_slope) * y[kPinionSpeed] -
+      m.gear_contact_radius * y[kGearSpeed];
+  out.deflection =
+      regime.side == 0 ? Real(0.0) : out.transmission_error - regime.side * b;  // (eq 5)
+  out.damper_force = regime.side == 0 && options_.damping_in_contact_only
+                         ? Real(0.0)
+                         : dynamics_.mesh_damping * out.transmission_velocity;
+  out.mesh_force = m.mesh_stiffness * out.deflection + out.damper_force;
+}
+
+template <class Real>
+void GearPairSystem::mechanics(const MeshPhase& phase, const Real* y,
+                               MechanicsOf<Real>& out) const {
+  kinematics(phase, y, out);
+  const DrivelineDynamics& d = dynamics_;
+  out.pinion_shaft_torque = d.pinion_shaft_stiffness * y[kPinionShaftTwist] +
+                            d.pinion_shaft_damping * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
+  out.gear_shaft_torque = d.gear_shaft_stiffness * y[kGearShaftTwist] +
+                          d.gear_shaft_damping * (y[kGearSpeed] - y[kWheelSpeed]);
+  out.pinion_friction_torque = out.gear_friction_torque = out.loss_power = 0;
+}
+
+inline ContactConditions GearPairSystem::contact_conditions(const FlankKinematics& flank,
+                                                            double load, const double* y,
+                                                            FlankMotion& motion) const {
+  motion = flank_motion(flank, y[kPinionSpeed], y[kGearSpeed]);
+  if (options_.tabulated_friction_arms) {
+    motion.pinion_friction_arm = flank.pinion_friction_arm;
+    motion.gear_friction_arm = flank.gear_friction_arm;
+  }
+  double drift_x = 0, drift_y = 0;
+  if (options_.subtract_contact_point_motion) {
+    drift_x = flank.contact_point_velocity_x * y[kPinionSpeed];
+    drift_y = flank.contact_point_velocity_y * y[kPinionSpeed];
+  }
+  return {load,
+          flank.radius_x,
+          flank.radius_y,
+          motion.pinion_x - drift_x,
+          motion.pinion_y - drift_y,
+          motion.gear_x - drift_x,
+          motion.gear_y - drift_y};
+}
+
+template <class Real>
+void GearPairSystem::motion(const Real* y, const MechanicsOf<Real>& at,
+                            const TorquesOf<Real>& torques, Real* dy) const {
+  const MeshFunctionsOf<Real>& m = at.mesh;
+  Real pinion_torque =
+      -m.pinion_contact_radius * at.mesh_force + at.pinion_shaft_torque + at.pinion_friction_torque;
+  if (options_.energy_consistent) pinion_torque = pinion_torque + at.parametric_torque();
+  const Real gear_torque =
+      m.gear_contact_radius * at.mesh_force - at.gear_shaft_torque + at.gear_friction_torque;
+  const Real time = cycle_angle_ / y[kPinionSpeed];
+  dy[kTime] = time;
+  dy[kPinionShaftTwist] = time * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
+  dy[kWinding] = time * (mesh_.mean_pinion_contact_radius() * y[kPinionSpeed] -
+                         mesh_.mean_gear_contact_radius() * y[kGearSpeed]);
+  dy[kGearShaftTwist] = time * (y[kGearSpeed] - y[kWheelSpeed]);
+  const Real pinion_shaft_torque = torques.pinion - at.pinion_shaft_torque;
+  const Real wheel_torque = at.gear_shaft_torque - torques.wheel;
+  dy[kPinionShaftSpeed] = time * (pinion_shaft_torque * inverse_.pinion_shaft_inertia);  // (eq 1)
+  dy[kPinionSpeed] = time * (pinion_torque * inverse_.pinion_inertia);                   // (eq 2)
+  dy[kGearSpeed] = time * (gear_torque * inverse_.gear_inertia);                         // (eq 3)
+  dy[kWheelSpeed] = time * (wheel_torque * inverse_.wheel_inertia);                      // (eq 4)
+}
+
+}  // namespace tribodyn

@@ -1,0 +1,71 @@
+#include "core/integrate/mesh_cycle_march.h"
+
+#include <algorithm>
+
+namespace tribodyn {
+
+MarchScales march_scales(const GearPairSystem& system, double mean_pinion_speed) {
+  const MeshData& mesh = system.mesh();
+  const DrivelineDynamics& d = system.dynamics();
+  const double r_p = mesh.mean_pinion_contact_radius(), r_g = mesh.mean_gear_contact_radius();
+  const double ratio = r_p / r_g;
+  MarchScales s{};
+  s.torque =
+      std::max({std::abs(system.torques().pinion), ratio * std::abs(system.torques().wheel), 0.1});
+  s.length = s.torque / (r_p * mesh.mean_mesh_stiffness());
+  const double compliance = r_p * r_p / d.pinion_inertia + r_g * r_g / d.gear_inertia;
+  s.speed = s.length * std::sqrt(mesh.mean_mesh_stiffness() * compliance) / r_p;
+  s.loss_work = 0.01 * s.torque * system.cycle_angle();
+  s.loss_squared = 1e-4 * s.torque * s.torque * system.cycle_angle() / mean_pinion_speed;
+  s.time = s.length / (r_p * mean_pinion_speed);
+  return s;
+}
+
+double MarchScales::of(const MeshData& mesh, int component) const {
+  const double r_p = mesh.mean_pinion_contact_radius(), r_g = mesh.mean_gear_contact_radius();
+  switch (component) {
+    case kTime:
+      return time;
+    case kPinionShaftTwist:
+      return length / r_p;
+    case kWinding:
+      return length;
+    case kGearShaftTwist:
+      return length / r_g;
+    case kPinionShaftSpeed:
+    case kPinionSpeed:
+      return speed;
+    case kGearSpeed:
+    case kWheelSpeed:
+      return speed * r_p / r_g;
+    case kLossWork:
+    case kShaftDampingWork:
+    case kMeshDampingWork:
+    case kParametricWork:
+      return loss_work;
+    case kLossShareSquared:
+      return loss_squared;
+    default:
+      return std::numeric_limits<double>::infinity();
+  }
+}
+
+void throw_if_refused(ContactStatus status) {
+  if (status == ContactStatus::kOk) return;
+  throw Refusal(contact_status_name(status), contact_status_sentence(status));
+}
+
+void throw_if_refused(const GearPairSystem& system) { throw_if_refused(system.refusal()); }
+
+void march_mesh_cycle(GearPairSystem& system, const MarchScales& scales,
+                      const MarchOptions& options, MarchState& state, SolverWork& work) {
+  PhaseSystem<false> phases(system, scales);
+  DormandPrinceWithEvents<PhaseSystem<false>> march(phases, options);
+  state[kTime] = state[kLossWork] = state[kLossShareSquared] = 0;
+  double phase = 0;
+  march.run(phase, state, 1.0);
+  work += march.work();
+  ++work.mesh_cycles;
+}
+
+}  // namespace tribodyn

@@ -1,0 +1,164 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/driveline/gear_pair_system.h"
+#include "core/integrate/dormand_prince_with_events.h"
+#include "core/integrate/graded_phase.h"
+
+namespace tribodyn {
+
+/// Sizes of the components of the march: what an error of one is measured against.
+struct MarchScales {
+  double length;        ///< static mesh deflection [m]
+  double speed;         ///< pinion speed of a free vibration that large [rad/s]
+  double torque;        ///< [N m]
+  double loss_work;     ///< 1 % of the input work of a mesh cycle [J]; of each work in the balance
+  double loss_squared;  ///< the same for kLossShareSquared
+  double time;          ///< in which the pinion turns by length/R_p0 [s]
+  double of(const MeshData& mesh, int component) const;
+};
+
+MarchScales march_scales(const GearPairSystem& system, double mean_pinion_speed);
+
+/// Opening (or closing) of the gap.
+struct GapEvent {
+  double phase;  ///< [cycles]
+  double time;   ///< [s]
+  bool opens;
+};
+
+void throw_if_refused(ContactStatus status);
+void throw_if_refused(const GearPairSystem& system);
+
+/// The gear pair as DormandPrinceWithEvents sees it, over progress through a mesh cycle in [0, 1]:
+/// mesh phase, but stretched where a flank pair takes or gives up its load (GradedPhase). kRecord
+/// adds the integrals of RecordComponent.
+template <bool kRecord>
+class PhaseSystem {
+ public:
+  static constexpr int kSize =
+      kRecord ? static_cast<int>(kRecordComponents) : static_cast<int>(kMarchComponents);
+  static constexpr int kEvents = 2;
+  using State = std::array<double, kSize>;
+
+  PhaseSystem(GearPairSystem& system, const MarchScales& scales)
+      : system_(system), scales_(scales) {
+    for (int i = 0; i < kSize; ++i) {
+      scale_[i] = scales.of(system.mesh(), i);
+    }
+    system_.set_interval(0);
+    piece_ = GradedPhase(0, 0, next_breakpoint(0), takes_load(), gives_load());
+  }
+
+  /// Where the march is in the mesh cycle [cycles], and back; of the piece that it is in.
+  double phase(double progress) const { return piece_.phase(progress); }
+  double progress(double phase) const { return piece_.progress(phase); }
+
+  void derivative(double progress, const State& y, State& dy) {
+    constexpr double kNoRate = std::numeric_limits<double>::quiet_NaN();  // fails the step
+    if (std::isfinite(y[kPinionSpeed])) pinion_speed_ = y[kPinionSpeed];
+    if (std::isfinite(y[kPinionShaftSpeed])) shaft_speed_ = y[kPinionShaftSpeed];
+    // A state without numbers comes from a refused contact earlier in the step, whose name is kept.
+    if (y[kPinionSpeed] <= 0 || std::isnan(y[kPinionSpeed])) {
+      dy.fill(kNoRate);
+      return;
+    }
+    system_.evaluate(phase(progress), y.data(), instant_);
+    system_.derivative(y.data(), instant_, kRecord, dy.data());
+    const double slope = piece_.slope(progress);
+    for (double& rate : dy) rate *= slope;
+    // A refused contact fails the step: the wild stages of one that is too long mean nothing.
+    refusal_ = system_.take_refusal();
+    if (refusal_ != ContactStatus::kOk) dy.fill(kNoRate);
+  }
+  void on_no_step() const {
+    // Phase goes like the root of time where the pinion stops: steps end before the speed is zero.
+    const auto stands = [&](double speed) {
+      return speed * scales_.time * system_.mesh().mean_pinion_contact_radius() <
+             0.05 * scales_.length;
+    };
+    if (stands(pinion_speed_)) {
+      throw Refusal("NO_FORWARD_ROTATION",
+                    "the pinion comes to a stop: the march over mesh phase needs forward rotation");
+    }
+    if (stands(shaft_speed_)) {
+      throw Refusal("NO_FORWARD_ROTATION",
+                    "the pinion shaft comes to a stop: the share of power that is lost (eq 30) has "
+                    "no value there");
+    }
+    throw_if_refused(refusal_);
+  }
+
+  void events(double progress, const State& y, std::array<double, kEvents>& g) const {
+    g = system_.events(system_.at_phase(phase(progress)), y.data(), scales_.length,
+                       scales_.torque / system_.mesh().mean_pinion_contact_radius());
+  }
+
+  void on_event(int index, double progress, const State& y) {
+    const double at_phase = phase(progress);
+    const bool load_begins = change_regime(index, at_phase, y);
+    piece_ = GradedPhase(progress, at_phase, next_breakpoint(progress), load_begins, gives_load());
+  }
+
+  double next_breakpoint(double) const {
+    return static_cast<double>(system_.interval() + 1) / system_.mesh().intervals();
+  }
+  void on_breakpoint(double progress) {
+    system_.set_interval(system_.interval() + 1);
+    piece_ = GradedPhase(progress, progress, next_breakpoint(progress), takes_load(), gives_load());
+  }
+  double scale(int i) const { return scale_[i]; }
+  /// The load of all ends where the event is, like a power: friction goes like W^0.74 there.
+  bool corner_at(int) const { return system_.regime.loaded; }
+
+  std::vector<GapEvent>* gap_events = nullptr;
+
+ private:
+  /// True if the load begins here, from zero.
+  bool change_regime(int index, double at_phase, const State& y) {
+    const int before = system_.regime.side;
+    const bool load_begins = system_.change_regime(index, system_.at_phase(at_phase), y.data());
+    const int side = system_.regime.side;
+    if (gap_events != nullptr && (before == 0) != (side == 0)) {
+      gap_events->push_back({at_phase, y[kTime], side == 0});
+    }
+    return load_begins;
+  }
+
+  bool takes_load() const { return share_is_zero(0); }
+  bool gives_load() const { return share_is_zero(1); }
+  /// Whether a loaded pair has no load at that end (0 or 1) of the interval but has inside.
+  bool share_is_zero(int end) const {
+    if (!system_.regime.loaded) return false;
+    constexpr double kNothing = 1e-12;
+    const int interval = system_.interval();
+    const double count = system_.mesh().intervals();
+    std::array<FlankKinematics, kFlankPairs> at_end, inside;
+    system_.mesh().flanks(interval, (interval + end) / count, at_end);
+    system_.mesh().flanks(interval, (interval + 0.5) / count, inside);
+    for (int k = 0; k < kFlankPairs; ++k) {
+      if (at_end[k].load_share <= kNothing && inside[k].load_share > kNothing) return true;
+    }
+    return false;
+  }
+
+  GearPairSystem& system_;
+  MarchScales scales_;
+  State scale_;
+  GradedPhase piece_;
+  double pinion_speed_ = 0, shaft_speed_ = 0;   ///< in the last evaluation
+  ContactStatus refusal_ = ContactStatus::kOk;  ///< of the last evaluation of a state with numbers
+  Instant instant_;
+};
+
+/// Marches one mesh cycle from phase 0; time and work start from zero. Adds to `work`.
+/// Throws Refusal NO_FORWARD_ROTATION when the pinion comes to a stop, and the name of a contact's
+/// refusal when one is met.
+void march_mesh_cycle(GearPairSystem& system, const MarchScales& scales,
+                      const MarchOptions& options, MarchState& state, SolverWork& work);
+
+}  // namespace tribodyn

@@ -1,0 +1,397 @@
+#include "core/periodic/find_orbit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/numerics/square.h"
+#include "core/periodic/grid_convergence.h"
+#include "core/periodic/orbit_solver.h"
+#include "core/periodic/steady_state.h"
+#include "core/periodic/tapping_start.h"
+#include "core/refusal.h"
+
+namespace tribodyn {
+namespace {
+
+constexpr double kPicardShare = 0.4;    // of the tolerance, for the Picard error
+constexpr int kTransientPeriods = 300;  // periods
+constexpr double kSmallFlipMargin = 0.06;
+constexpr double kLittleTension = 0.2;  // of the mean force
+constexpr double kMarchedDoubt = 1e-4;  // about multipliers by the march
+constexpr int kMostFailures = 3;
+constexpr int kTapSteps = 40;            // of a mesh cycle: a tap lasts for some percent of it
+constexpr int kStepsPerOscillation = 7;  // show its height to some percent; fewer show nothing
+
+/// Half-width of the interval around 1 in which a multiplier under frozen friction does not decide
+/// whether the orbit attracts: multipliers are good to 3e-3, and better if the period is short.
+double margin(const PeriodicProblem& problem, int period_in_cycles) {
+  constexpr double kDecay = 3.4;  // [1/s]
+  const double period = period_in_cycles * problem.system.cycle_angle() / problem.mean_pinion_speed;
+  return std::min(0.006, kDecay * period);
+}
+
+/// Whether the state at half of the period is that at its start.
+bool is_half_as_long(const PeriodicProblem& problem, const PeriodicOrbit& orbit) {
+  const auto half = std::find_if(orbit.pieces.begin(), orbit.pieces.end(), [&](const auto& piece) {
+    return piece.phase >= 0.5 * orbit.period - 1e-9;
+  });
+  const MarchScales scales = march_scales(problem.system, problem.mean_pinion_speed);
+  double difference = 0;
+  for (int i = kPinionShaftTwist; i <= kWheelSpeed; ++i) {
+    difference = std::max(difference, std::abs(half->start[i] - orbit.pieces.front().start[i]) /
+                                          scales.of(problem.system.mesh(), i));
+  }
+  return difference < 1e-3;
+}
+
+/// The search for one orbit: on one grid after another, or on the grid whose error the reference
+/// orbits give.
+class GridRefinement {
+ public:
+  /// `cycles_left`: mesh cycles that may be integrated; reduced also where an orbit is known
+  /// already, so that results do not depend on the cache. Keeps the references.
+  GridRefinement(const PeriodicProblem& problem, const OrbitSearch& search, OrbitSolver& solver,
+                 SolverWork& work, int& cycles_left)
+      : problem_(problem),
+        system_(problem.system),
+        search_(search),
+        solver_(solver),
+        work_(work),
+        cycles_left_(cycles_left),
+        coarser_(system_.mesh().intervals()) {
+    options_.renew_friction = search.renew_friction;
+    options_.bilateral_contact = search.try_contact_first;
+    options_.share_of_change = 0.3;
+    origin_.state = search.start;
+    origin_.torques = system_.torques();
+    origin_.period = search.period;
+  }
+
+  std::optional<PeriodicOrbit> refine() {
+    const double least =
+        std::max(kStepsPerOscillation * mesh_oscillations(system_, problem_.mean_pinion_speed),
+                 problem_.tolerance < kLooseTolerance || !search_.try_contact_first ? 24.0 : 12.0);
+    if (least > kMostStepsPerCycle) return std::nullopt;
+    if (search_.references != nullptr && problem_.tolerance >= kLooseTolerance) {
+      if (auto found = solve_by_reference(static_cast<int>(least))) return found;
+      if (is_over_) return std::nullopt;
+      repels_ = doubles_ = false;
+    }
+    const StepSequence sequence(system_.mesh().intervals(), static_cast<int>(least));
+    constexpr double kUnknown = std::numeric_limits<double>::infinity();
+    double excess = kUnknown;
+    for (int steps = sequence.first(); steps <= kMostStepsPerCycle && !is_over_;
+         steps = sequence.after(steps, excess)) {
+      const MeshGrid& grid = problem_.grids.with_steps(steps);
+      excess = kUnknown;
+      if (!solve_on_grid(grid)) continue;
+      const bool is_compared = coarser_.is_possible();
+      const double error = is_compared ? step_error(grid) + orbit_.picard_error : 0;
+      if (is_compared) excess = error / problem_.tolerance;
+      const bool is_in_tension = options_.bilateral_contact && orbit_.least_pressing_force < 0;
+      if (is_compared && error <= problem_.tolerance && !is_in_tension) {
+        if (!attracts(grid)) return std::nullopt;
+        orbit_.estimated_error = error;
+        return std::move(orbit_);
+      }
+      coarser_.add(steps, orbit_.figures, error);
+    }
+    return std::nullopt;
+  }
+
+  /// Whether an orbit was found that repels, or may repel near a period doubling.
+  bool repels() const { return repels_; }
+  /// Whether an orbit of twice the period is near.
+  bool doubles() const { return doubles_; }
+
+  const Torques& torques() const { return orbit_.torques; }
+
+  /// A state beside the orbit that repels, along the eigenvector of the multiplier nearest to -1:
+  /// off by half of the mean mesh deflection, because from nearer hundreds of cycles may lead back.
+  /// An orbit without contact loss is left by enough to part the flanks: until then the motion is
+  /// linear, and leaves no faster than the multiplier.
+  MarchState beside_repelling() const {
+    const double off = orbit_.contact_loss ? 0.5 : 1.2;
+    const MarchScales scales = march_scales(system_, problem_.mean_pinion_speed);
+    const auto direction = orbit_.jacobian->flip_direction();
+    const double share = off / std::max(std::abs(direction(kWinding - 1)), 0.5);
+    MarchState out = orbit_.pieces.front().start;
+    for (int i = kPinionShaftTwist; i <= kWheelSpeed; ++i) {
+      out[i] += share * direction(i - 1) * scales.of(system_.mesh(), i);
+    }
+    return out;
+  }
+
+ private:
+  double step_error(const MeshGrid& grid) const {
+    return coarser_.error(grid.steps(), orbit_.figures);
+  }
+
+  /// Solves on the one grid whose error is known from the same orbit under Coulomb's friction.
+  /// Returns nullopt if the reference does not decide.
+  std::optional<PeriodicOrbit> solve_by_reference(int least) {
+    const bool in_contact = options_.bilateral_contact;
+    if (options_.bilateral_contact) {
+      const auto& references = references_now(least);
+      if (references.empty()) return std::nullopt;
+      if (references.front().least_pressing_force >= 0) return polish_from_reference(references);
+      if (references.front().least_pressing_force > -kLittleTension) return std::nullopt;
+      options_.bilateral_contact = false;
+    }
+    cycles_left_ -= search_.few_cycles * search_.period;
+    options_.first_cycles = search_.few_cycles;
+    std::optional<PeriodicOrbit> found;
+    if (cycles_left_ >= 0) found = polish_from_reference(references_now(least));
+    options_.bilateral_contact = in_contact;
+    options_.first_cycles = 0;
+    return found;
+  }
+
+  const std::vector<PeriodicOrbit>& references_now(int least) {
+    return search_.references->find(problem_, options_, origin_, least);
+  }
+
+  /// Solves from the first reference whose steps are short enough.
+  std::optional<PeriodicOrbit> polish_from_reference(const std::vector<PeriodicOrbit>& references) {
+    const auto doubt = [](const PeriodicOrbit& reference) {
+      return kReferenceCaution * reference.estimated_error;
+    };
+    const auto fits = std::find_if(references.begin(), references.end(), [&](const auto& each) {
+      return doubt(each) <= kShareOfSteps * problem_.tolerance;
+    });
+    if (fits == references.end()) return std::nullopt;
+    const MeshGrid& grid = problem_.grids.with_steps(fits->steps_per_mesh_cycle);
+    // Computed here, so that all copies of the reference hold it.
+    fits->jacobian->flip_margin();
+    fits->jacobian->floquet_radius_below(1 - margin(problem_, search_.period));
+    orbit_ = *fits;
+    options_.tolerance = problem_.tolerance - doubt(*fits);
+    if (!solver_.solve(grid, options_, orbit_)) {
+      is_over_ = system_.take_refusal() != ContactStatus::kOk;
+      return std::nullopt;
+    }
+    const bool is_alike = options_.bilateral_contact ? orbit_.least_pressing_force >= 0
+                                                     : orbit_.contact_loss && fits->contact_loss;
+    if (!is_alike || !attracts(grid)) return std::nullopt;
+    orbit_.estimated_error = doubt(*fits) + orbit_.picard_error;
+    return std::move(orbit_);
+  }
+
+  /// Returns false if there is no orbit on the grid; sets is_over_ if none is to be expected on
+  /// another grid.
+  bool solve_on_grid(const MeshGrid& grid) {
+    // The tolerance is shared by the error of the steps and the Picard error.
+    options_.tolerance = coarser_.is_possible() ? kPicardShare * problem_.tolerance
+                                                : std::max(5 * problem_.tolerance, 1e-4);
+    bool found = options_.bilateral_contact && solve_in_contact(grid);
+    if (is_over_) return false;
+    if (is_tapping_ && !coarser_.is_possible()) {
+      if (grid.steps() < kTapSteps) return false;
+      start_tapping(grid);
+    }
+    if (!found) found = march_then_solve(grid);
+    if (is_over_) return false;
+    if (found && coarser_.is_possible()) found = iterate_further(grid);
+    if (found) return true;
+    is_over_ = system_.take_refusal() != ContactStatus::kOk || !search_.allow_transient_march ||
+               ++failures_ == kMostFailures;
+    coarser_.clear();
+    return false;
+  }
+
+  /// Solves under bilateral contact. Under tension contact is lost from then on: under a little, an
+  /// orbit with contact loss near this one is tried; otherwise the start decides.
+  bool solve_in_contact(const MeshGrid& grid) {
+    options_.first_cycles = 0;
+    const bool solved = solve(grid);
+    if (solved && !(orbit_.least_pressing_force < -doubtful_tension_)) {
+      doubtful_tension_ /= 4;
+      return true;
+    }
+    is_over_ = system_.take_refusal() != ContactStatus::kOk;
+    options_.bilateral_contact = false;
+    orbit_.distance_since_jacobian = std::numeric_limits<double>::infinity();  // made without a gap
+    coarser_.clear();
+    if (is_over_) return false;
+    if (solved && orbit_.least_pressing_force >= -kLittleTension) {
+      if (solver_.solve(grid, options_, orbit_)) return true;
+      is_over_ = system_.take_refusal() != ContactStatus::kOk;
+      if (is_over_) return false;
+    }
+    start_tapping(grid);
+    return false;
+  }
+
+  /// Starts where flanks tap each other, if the load is so light that they must. From the static
+  /// equilibrium they would be thrown far into the backlash, and so light a load takes hundreds of
+  /// mesh cycles to bring them back.
+  void start_tapping(const MeshGrid& grid) {
+    system_.set_torques(origin_.torques);
+    const auto start = tapping_start(system_, grid, problem_.mean_pinion_speed);
+    if (!start) return;
+    origin_.state = *start;
+    is_tapping_ = true;
+  }
+
+  /// Newton's method converges to the orbit that is near, if need be on another grid; others are
+  /// found after a transient.
+  bool march_then_solve(const MeshGrid& grid) {
+    const bool is_last = failures_ + 1 == kMostFailures;
+    for (const int cycles : {is_tapping_ ? 0 : search_.few_cycles, search_.first_cycles}) {
+      if (!coarser_.is_possible()) cycles_left_ -= cycles * search_.period;
+      if (cycles_left_ < 0) {
+        system_.take_refusal();
+        is_over_ = true;
+        return false;
+      }
+      options_.first_cycles = cycles;
+      if (solve(grid)) return true;
+      if (coarser_.is_possible() || search_.few_cycles == search_.first_cycles) break;
+      if (search_.few_cycles == 0 && !is_last) break;
+    }
+    return false;
+  }
+
+  /// Solves from the coarser grid's orbit, or without friction from the start.
+  bool solve(const MeshGrid& grid) {
+    if (!coarser_.is_possible()) {
+      const bool is_near = !options_.bilateral_contact && options_.first_cycles == 0;
+      orbit_ = origin_;
+      const bool good = is_near ? solver_.march_one_period(grid, options_, orbit_)
+                                : solver_.solve_without_friction(grid, options_, orbit_);
+      if (!good) return false;
+    }
+    return solver_.solve(grid, options_, orbit_);
+  }
+
+  /// Iterates further if only the Picard error is too large: that is cheaper than another grid.
+  bool iterate_further(const MeshGrid& grid) {
+    const double left = problem_.tolerance - step_error(grid);
+    if (!(left > 0) || orbit_.picard_error <= left) return true;
+    ShootingOptions more = options_;
+    more.tolerance = left;
+    more.share_of_change = 0;
+    return solver_.solve(grid, more, orbit_);
+  }
+
+  /// Whether the orbit surely attracts.
+  bool attracts(const MeshGrid& grid) {
+    // A Jacobian from near may miss a flank that hardly parts, and the effect of friction on the
+    // multipliers: 0.02 near a period doubling.
+    const bool doubles = orbit_.jacobian->flip_margin() < kSmallFlipMargin;
+    if ((orbit_.contact_loss || doubles) && !solver_.renew_jacobian(grid, options_, orbit_)) {
+      return false;
+    }
+    double doubt = margin(problem_, search_.period);
+    if (orbit_.jacobian->floquet_radius_below(1 - doubt)) return true;
+    double multiplier = orbit_.jacobian->largest_multiplier();
+    if (std::abs(multiplier - 1) <= doubt) {
+      if (!march_multiplier()) return false;
+      multiplier = *orbit_.marched_multiplier;
+      doubt = kMarchedDoubt;
+    }
+    if (multiplier < 1 - doubt) return true;
+    // If the multiplier does not decide, the doubled period is tried.
+    doubles_ =
+        doubles || (multiplier > 1 + doubt && orbit_.jacobian->leading_multiplier_is_negative());
+    repels_ = doubles_ || (multiplier > 1 + doubt && orbit_.period > 1);
+    return false;
+  }
+
+  bool march_multiplier() {
+    MarchOptions march;
+    march.relative_tolerance = 1e-8;
+    march.interrupted = problem_.interrupted;
+    system_.set_torques(orbit_.torques);
+    system_.solve_together(&problem_.contacts);
+    try {
+      orbit_.marched_multiplier =
+          marched_multiplier(problem_, orbit_.pieces.front().start, orbit_.period, march, work_);
+    } catch (const Refusal&) {
+      system_.take_refusal();
+    }
+    system_.solve_together(nullptr);
+    return orbit_.marched_multiplier.has_value();
+  }
+
+  const PeriodicProblem& problem_;
+  GearPairSystem& system_;
+  const OrbitSearch& search_;
+  OrbitSolver& solver_;
+  SolverWork& work_;
+  int& cycles_left_;
+  ShootingOptions options_;
+  PeriodicOrbit origin_, orbit_;
+  GridComparison coarser_;
+  int failures_ = 0;
+  double doubtful_tension_ =
+      kTensionForSeparation;  // of the mean force: as little may be the steps' error
+  bool is_tapping_ = false;   // at the start
+  bool is_over_ = false, repels_ = false, doubles_ = false;
+};
+
+}  // namespace
+
+double mesh_oscillations(const GearPairSystem& system, double mean_pinion_speed) {
+  const MeshData& mesh = system.mesh();
+  const DrivelineDynamics& d = system.dynamics();
+  const double compliance = square(mesh.mean_pinion_contact_radius()) / d.pinion_inertia +
+                            square(mesh.mean_gear_contact_radius()) / d.gear_inertia;
+  return std::sqrt(mesh.mean_mesh_stiffness() * compliance) /
+         (mean_pinion_speed * mesh.pinion_teeth());
+}
+
+bool oscillates_too_often(double mesh_oscillations) {
+  return kStepsPerOscillation * mesh_oscillations > kMostStepsPerCycle;
+}
+
+std::optional<PeriodicOrbit> find_orbit(const PeriodicProblem& problem, const OrbitSearch& search,
+                                        SolverWork& work,
+                                        std::optional<AperiodicMotion>& aperiodic) {
+  constexpr int kLongestPeriod = 4;
+  OrbitSearch next = search;
+  int cycles_left = search.maximum_mesh_cycles;
+  OrbitSolver solver(problem, work);
+  const Torques torques = problem.system.torques();
+  std::optional<AperiodicMotion> beside;
+  for (bool has_marched = false;; has_marched = true) {
+    problem.system.set_torques(torques);
+    const auto new_refinement = [&] {
+      return GridRefinement(problem, next, solver, work, cycles_left);
+    };
+    GridRefinement refinement = new_refinement();
+    auto found = refinement.refine();
+    const bool repels = refinement.repels();
+    while (found && next.period % 2 == 0 && is_half_as_long(problem, *found)) {
+      next.period /= 2;
+      next.start = found->state;
+      next.few_cycles = next.first_cycles = 1;
+      auto shorter = new_refinement().refine();
+      if (!shorter) break;
+      found = std::move(shorter);
+    }
+    if (found) return found;
+    // The doubled orbit repels too, and a longer one does as well or does not exist after hundreds
+    // of cycles: no orbit attracts.
+    if (repels && next.period > 1) aperiodic = beside;
+    if ((has_marched && !repels) || 2 * next.period > kLongestPeriod) return found;
+    if (!search.allow_transient_march) return found;
+    // After a flip bifurcation or a fold: retry with a doubled period, or after a long transient.
+    if (repels) {
+      next.period *= 2;
+      if (refinement.doubles()) {
+        next.start = refinement.beside_repelling();
+        beside = {next.start, refinement.torques()};
+      }
+    }
+    if (!repels && search.try_contact_first) return found;
+    next.try_contact_first = false;
+    next.few_cycles = next.first_cycles = kTransientPeriods;
+    next.renew_friction = true;
+    next.references = nullptr;
+  }
+}
+
+}  // namespace tribodyn

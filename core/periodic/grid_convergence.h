@@ -1,0 +1,100 @@
+#pragma once
+
+#include <algorithm>
+
+#include "core/periodic/orbit_friction.h"
+
+namespace tribodyn {
+
+/// From this tolerance on twelve steps a mesh cycle may do.
+inline constexpr double kLooseTolerance = 3e-4;
+
+/// More steps per mesh cycle are not tried.
+inline constexpr int kMostStepsPerCycle = 4000;
+
+/// Numbers of steps per mesh cycle, each larger than the one before. The steps of the first grid
+/// end on samples of the mesh tables, those of the second do not: the errors that kinks at the
+/// samples cause then differ between the grids, and Richardson's estimate is meaningful. On the
+/// last grids no step has a kink inside.
+class StepSequence {
+ public:
+  /// `intervals`: of the tables; `least`: steps of the first.
+  StepSequence(int intervals, int least) : intervals_(intervals), coarsest_(least) {
+    while (coarsest_ < intervals && intervals % coarsest_ != 0) ++coarsest_;
+    if (coarsest_ > intervals) {
+      coarsest_ = intervals;
+      while (coarsest_ < least) coarsest_ *= 2;
+    }
+  }
+  int first() const { return coarsest_; }
+  /// `excess`: the error over the tolerance. Below 2 the next grid has only half as many steps
+  /// more.
+  int after(int steps, double excess) const {
+    if (steps == coarsest_) return coarsest_ * 5 / 3;
+    if (steps == coarsest_ * 5 / 3 && excess < 2) return coarsest_ * 5 / 2;
+    if (steps % intervals_ == 0 || 3 * steps <= intervals_) return 2 * steps;
+    int next = intervals_;
+    while (next < 2 * steps) next *= 2;
+    return next;
+  }
+
+ private:
+  int intervals_, coarsest_;
+};
+
+/// Factor on the error estimate of two grids: measured against marches of random scenes.
+inline constexpr double kGridSafety = 1.7;
+
+/// The error of figures whose steps are `finer` times shorter than those of a coarser grid, by what
+/// that has changed of them: Richardson's estimate, for errors that fall by `gain`.
+/// `coarser_error`: of the coarser grid's figures. Two step lengths may agree by accident, three
+/// rarely do.
+inline double step_error(double change, double gain, double coarser_error, double finer) {
+  return std::max(kGridSafety * change / (gain - 1), coarser_error / (2 * finer * finer));
+}
+
+/// Estimates the error of an orbit's figures from their changes on successive grids.
+class GridComparison {
+ public:
+  /// `intervals`: of the mesh tables.
+  explicit GridComparison(int intervals) : intervals_(intervals) {}
+
+  /// Whether there is a coarser grid to compare with, and how many steps it has.
+  bool is_possible() const { return steps_ > 0; }
+  int steps() const { return steps_; }
+
+  /// Of the figures on a grid of more steps, relative.
+  double error(int steps, const OrbitFigures& figures) const {
+    const double finer = static_cast<double>(steps) / steps_;
+    const double change = figures.distance(figures_);
+    // Second order at kinks and events; more only where two halvings have shown it.
+    double gain = finer * finer;
+    if (finer == 2 && halving_difference_ > 0) {
+      gain = std::clamp(halving_difference_ / std::max(change, 1e-300), 2.5, 8.0);
+    }
+    return std::max(step_error(change, gain, error_, finer), kink_error(steps));
+  }
+
+  /// The grid that the next one is compared with; `error`: of its figures, 0 where not known.
+  void add(int steps, const OrbitFigures& figures, double error) {
+    halving_difference_ = steps == 2 * steps_ ? figures.distance(figures_) : 0;
+    steps_ = steps;
+    figures_ = figures;
+    error_ = error;
+  }
+  void clear() { *this = GridComparison(intervals_); }
+
+ private:
+  /// Bound of the error by kinks of the tables inside of steps, where two step lengths agree by
+  /// accident; by experience the error is half of it.
+  double kink_error(int steps) const {
+    return steps % intervals_ == 0 ? 0 : 0.025 / (static_cast<double>(steps) * steps);
+  }
+
+  int intervals_, steps_ = 0;
+  OrbitFigures figures_;
+  double error_ = 0;
+  double halving_difference_ = 0;  // of the figures to those of twice the step length; 0: unknown
+};
+
+}  // namespace tribodyn

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/contact/flank_contact_batch.h"
+#include "core/driveline/frozen_friction.h"
+#include "core/driveline/gear_pair_system.h"
+#include "core/integrate/mesh_grid.h"
+#include "core/integrate/orbit_piece.h"
+#include "core/integrate/step_block.h"
+
+namespace tribodyn {
+
+/// The outputs of an orbit's contacts, in the order of its instants and of their flank pairs.
+class SolvedContacts {
+ public:
+  /// Discards all outputs; they are 0 afterwards.
+  void resize(std::size_t count);
+  /// Discards all outputs and leaves them uninitialised.
+  void resize_for_overwrite(std::size_t count);
+  /// The arrays into which a batch writes, all but the status.
+  FlankContactBatchResults results();
+  const double* friction() const { return rows_[0]; }
+  void copy(std::size_t i, ContactFigures& to) const;
+  double film_load(std::size_t i) const;                               ///< W_EHL [N]
+  bool by_reference(std::size_t i) const { return by_reference_[i]; }  ///< not by the vector code
+
+ private:
+  Columns rows_;
+  std::unique_ptr<bool[]> limiting_stress_at_centre_, by_reference_;
+  std::size_t size_ = 0;
+};
+
+/// Everything at the starts, middles and ends of an orbit's pieces. A piece that continues the one
+/// before shares its end.
+struct SolvedPieces {
+  std::vector<Instant> instants;
+  std::vector<int> first;  ///< instant of each piece
+  std::span<const Instant, 3> of(std::size_t piece) const {
+    return std::span<const Instant, 3>(instants.data() + first[piece], 3);
+  }
+  bool goes_on(std::size_t piece) const { return piece > 0 && first[piece] < first[piece - 1] + 3; }
+};
+
+/// `grid`: that of the pieces' nodes; `contacts`: all contacts of the pieces. Changes the system's
+/// regime.
+SolvedPieces solved_pieces(GearPairSystem& system, const MeshGrid& grid,
+                           const std::vector<OrbitPiece>& pieces, const SolvedContacts& contacts);
+
+/// The scalar outputs of an orbit whose changes measure the error of grids and of the Picard
+/// iteration.
+struct OrbitFigures {
+  /// Of sum V_s F_fr / GearPairSystem::input_speed() [N m]: eq 30 but for the torque
+  double loss_rms = 0;
+  double loss_energy = 0;  ///< sum V_s F_fr over the period [J]
+  double dte_minimum = 0;  ///< x [m]
+  double dte_maximum = 0;
+  double torque = 0;  ///< the unknown one [N m]
+  /// The largest relative difference; of the extremes of x over the larger one's modulus.
+  double distance(const OrbitFigures& other) const;
+};
+
+/// Evaluates friction on a whole orbit: all its contacts are solved together.
+class OrbitFriction {
+ public:
+  /// Keeps the references. With a `coefficient` friction is Coulomb's, and no contact is solved.
+  OrbitFriction(GearPairSystem& system, const FlankContactBatch& contacts,
+                std::optional<double> coefficient = std::nullopt);
+
+  /// Evaluates friction on the pieces of an orbit, and all figures but the torque. Where the load
+  /// is below `light` [N], the friction arms are held constant. `grid`: that of the pieces' nodes.
+  /// Returns false if a contact is refused; the system has the reason.
+  bool evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces, double light,
+                FrozenFriction& friction, OrbitFigures& figures);
+  /// The same on a completed cycle whose flanks are in compression all the time. `contacts`: those
+  /// of the block's grid at which friction is evaluated.
+  bool evaluate(const StepBlock& block, const GridContacts& contacts, const CycleResponse& response,
+                FrozenFriction& friction, OrbitFigures& figures);
+  /// The smallest compression of touching flanks at the instants of the last evaluation [N];
+  /// negative: tension.
+  double least_pressing_force() const { return least_pressing_force_; }
+  InstructionSet instruction_set() const { return contacts_.instruction_set(); }
+  /// Hands over the contacts of the last evaluation.
+  std::shared_ptr<const SolvedContacts> take_contacts() {
+    return std::exchange(solved_, std::make_shared<SolvedContacts>());
+  }
+
+ private:
+  struct Sample {
+    double mesh_force, transmission_error, transmission_velocity;
+    double load;
+    int first, count;  // contacts
+  };
+  /// Returns the number of contacts.
+  int gather(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces);
+  /// Solves the contacts of `seen_`. Returns false if one is refused.
+  bool solve_contacts(const ContactGeometries& geometries, int count);
+
+  GearPairSystem& system_;
+  const FlankContactBatch& contacts_;
+  const std::optional<double> coefficient_;
+  ContactGeometries geometries_;
+  std::vector<int> first_;       // sample of each piece
+  std::vector<Sample> samples_;  // shared as the instants of SolvedPieces
+  Columns seen_;                 // SeenRow
+  std::shared_ptr<SolvedContacts> solved_ = std::make_shared<SolvedContacts>();
+  std::vector<ContactStatus> status_;
+  double least_pressing_force_ = 0;
+};
+
+}  // namespace tribodyn

@@ -1,0 +1,487 @@
+#include "core/periodic/orbit_sensitivity.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/integrate/piece_adjoint.h"
+#include "core/integrate/rk4_with_events.h"
+#include "core/periodic/orbit_contacts.h"
+
+namespace tribodyn {
+namespace {
+
+constexpr int kSectionStates = 7, kRates = kSectionStates + 1;  // rates: of time, then of states
+
+// The adjoints, in two groups of lanes: those of time and states at the end of the period; those of
+// the integrals of ContactSum, followed by those of the quantities below. Figures are computed from
+// the second group.
+enum Group { kOfEnd, kOfFigures, kGroups };
+enum { kSquaredLoss = kContactSums, kMinimum, kMaximum };
+constexpr int kIntegrals = kSquaredLoss + 1;
+static_assert(kGroups == OrbitContacts::kGroups);
+static_assert(kMaximum + 1 == kAdjointLanes && kRates == kAdjointLanes);
+
+/// An instant of a piece: what its rates depend on, and its transmission error.
+struct DifferentiatedInstant {
+  StageSlopes slopes;
+  double error_by_winding, velocity_by_winding;
+};
+
+MarchScales scales_under(GearPairSystem& system, const Torques& torques, double mean_speed) {
+  system.set_torques(torques);
+  return march_scales(system, mean_speed);
+}
+
+class OrbitDifferentiator {
+ public:
+  OrbitDifferentiator(const PeriodicProblem& problem, const PeriodicOrbit& orbit)
+      : system_(problem.system),
+        grid_(problem.grids.with_steps(orbit.steps_per_mesh_cycle)),
+        orbit_(orbit),
+        friction_(orbit.friction),
+        mean_speed_(problem.mean_pinion_speed),
+        solve_wheel_torque_(problem.solve_wheel_torque),
+        scales_(scales_under(system_, orbit.torques, mean_speed_)),
+        light_load_(kLightShare * scales_.torque / system_.mesh().mean_pinion_contact_radius()),
+        instruction_set_(problem.contacts.instruction_set()),
+        constants_(driveline_constants(system_)),
+        model_(problem.contacts.model()),
+        contacts_(system_, grid_, problem.contacts, model_, orbit, light_load_) {}
+
+  std::optional<OrbitSensitivity> run() {
+    if (!contacts_.differentiate()) return std::nullopt;
+    find_extremes();
+    for (int i = 0; i < kRates; ++i) adjoint_[kOfEnd][i][i] = 1;
+    for (std::size_t i = orbit_.pieces.size(); i-- > 0;) {
+      see_instants(i);
+      if (i + 1 < orbit_.pieces.size()) cross_event(i);
+      pass_piece(i);
+    }
+    return close();
+  }
+
+ private:
+  static constexpr double kLightShare = 1e-3;  // of the mean force: see Shooting::light_load()
+  /// Of the light load: what an event's location leaves of the force there.
+  static constexpr double kNoLoad = 1e-3;
+
+  MeshPhase phase_of(const OrbitPiece& p, int part) const {
+    if (p.node >= 0) return grid_.at(p.node + part);
+    const double phase = p.phase + 0.5 * part * p.length;
+    return system_.at_phase(phase - std::floor(phase));
+  }
+
+  /// Which half of which piece holds the extremes of x, and where in it.
+  void find_extremes() {
+    for (std::size_t i = 0; i < orbit_.pieces.size(); ++i) {
+      const OrbitPiece& p = orbit_.pieces[i];
+      for (int half = 0; half < 2; ++half) {
+        double x[2] = {}, slope[2] = {};
+        const double h = state_of(p, half + 1)[kTime] - state_of(p, half)[kTime];
+        for (const int end : {0, 1}) {
+          const ContactsAt& at = contacts_.at(i, half + end);
+          x[end] = at.transmission_error;
+          slope[end] = h * at.transmission_velocity;
+        }
+        const double beyond = 4.0 / 27 * (std::abs(slope[0]) + std::abs(slope[1]));  // at most
+        if (std::max(x[0], x[1]) + beyond <= maximum_.value &&
+            std::min(x[0], x[1]) - beyond >= minimum_.value) {
+          continue;
+        }
+        const double rise = x[1] - x[0], a = slope[0] + slope[1] - 2 * rise;
+        const double b = 3 * rise - 2 * slope[0] - slope[1];
+        const double discriminant = b * b - 3 * a * slope[0];
+        const double root = discriminant > 0 ? -(b + std::copysign(std::sqrt(discriminant), b)) : 0;
+        for (const double t : {0.0, 1.0, root / (3 * a), slope[0] / root}) {
+          if (!(t >= 0 && t <= 1)) continue;
+          const double value = x[0] + t * (slope[0] + t * (b + t * a));
+          if (value < minimum_.value) minimum_ = {value, i, half, t};
+          if (value > maximum_.value) maximum_ = {value, i, half, t};
+        }
+      }
+    }
+  }
+
+  /// A state in a regime under friction arms that are given.
+  void evaluate(const MeshPhase& phase, const ContactRegime& regime, const MarchState& y,
+                const FrictionArms& arms, DifferentiatedInstant& out) {
+    system_.regime = regime;
+    Mechanics at;
+    system_.mechanics(phase, y.data(), at);
+    StageSlopes& s = out.slopes;
+    const MeshFunctions& m = at.mesh;
+    s.load = regime.load(at.mesh_force);
+    at.pinion_friction_torque = arms.pinion * s.load;
+    at.gear_friction_torque = arms.gear * s.load;
+    system_.motion(y.data(), at, s.rate.data());
+    const bool gap = regime.side == 0;
+    const double load_by_force = s.load > 0 ? regime.side : 0;
+    const double radius_by_winding = system_.gear_radius_by_winding(phase, y[kWinding]);
+    out.error_by_winding = m.gear_contact_radius / system_.mesh().mean_gear_contact_radius();
+    out.velocity_by_winding = -radius_by_winding * y[kGearSpeed];
+    s.relative_radius = m.pinion_contact_radius - m.static_transmission_error_slope;
+    s.gear_radius = m.gear_contact_radius;
+    s.damping =
+        gap && system_.options().damping_in_contact_only ? 0 : system_.dynamics().mesh_damping;
+    s.force_by_winding =
+        (gap ? 0 : m.mesh_stiffness * out.error_by_winding) + s.damping * out.velocity_by_winding;
+    s.pinion_arm = load_by_force * arms.pinion - m.pinion_contact_radius;
+    s.gear_arm = load_by_force * arms.gear + m.gear_contact_radius;
+    s.pinion_torque_by_winding = 0;
+    s.gear_torque_by_winding = at.mesh_force * radius_by_winding;
+    if (system_.options().energy_consistent) {
+      s.pinion_arm += m.static_transmission_error_slope;
+      if (!gap) {
+        s.pinion_torque_by_winding = -m.mesh_stiffness_slope * at.deflection * out.error_by_winding;
+      }
+    }
+    s.time = s.rate[kTime];
+    s.per_speed = 1 / y[kPinionSpeed];
+  }
+
+  /// The parts of a piece and the later stages of its step. The end may be the start of the piece
+  /// behind it.
+  void see_instants(std::size_t index) {
+    const OrbitPiece& p = orbit_.pieces[index];
+    constexpr double kNode[4] = {0, 0.5, 0.5, 1};
+    FrictionArms arms[3];
+    MeshPhase phase[3];
+    for (int part = 0; part < 3; ++part) {
+      arms[part] = friction_.at(p.phase + 0.5 * part * p.length);
+      phase[part] = phase_of(p, part);
+    }
+    behind_ = part_[0];
+    const bool goes_on = index + 1 < orbit_.pieces.size() &&
+                         orbit_.pieces[index + 1].regime.side == p.regime.side &&
+                         orbit_.pieces[index + 1].regime.loaded == p.regime.loaded;
+    if (goes_on) {
+      part_[2] = behind_;
+    } else {
+      evaluate(phase[2], p.regime, p.end, arms[2], part_[2]);
+    }
+    evaluate(phase[1], p.regime, p.middle, arms[1], part_[1]);
+    evaluate(phase[0], p.regime, p.start, arms[0], part_[0]);
+    const std::array<double, 8>* rate = &part_[0].slopes.rate;
+    for (int n = 1; n < 4; ++n) {
+      MarchState stage = p.start;
+      for (int i = 0; i < kRates; ++i) stage[i] += kNode[n] * p.length * (*rate)[i];
+      const int part = n == 3 ? 2 : 1;
+      evaluate(phase[part], p.regime, stage, arms[part], stage_[n]);
+      rate = &stage_[n].slopes.rate;
+    }
+  }
+
+  /// Whether flanks part or meet, or their load begins or ends, between a piece and the next one.
+  bool is_event(std::size_t index) const {
+    const ContactRegime &before = orbit_.pieces[index].regime,
+                        &after = orbit_.pieces[index + 1].regime;
+    return before.side != after.side || before.loaded != after.loaded;
+  }
+
+  /// Takes the adjoints back across the place where flanks part or meet, at the end of a piece: at
+  /// a fixed phase the state changes by (f- - f+) dphi, dphi the phase change of the place.
+  void cross_event(std::size_t index) {
+    const OrbitPiece &before = orbit_.pieces[index], &after = orbit_.pieces[index + 1];
+    if (before.regime.side == after.regime.side) return;
+    const double speed = std::abs(contacts_.at(index, 2).transmission_velocity);
+    least_touch_speed_ = std::min(least_touch_speed_, speed);
+    greatest_touch_speed_ = std::max(greatest_touch_speed_, speed);
+    for (int i = 0; i < kRates; ++i) {
+      const double jump = part_[2].slopes.rate[i] - behind_.slopes.rate[i];
+      for (int g = 0; g < kGroups; ++g) {
+        for (int f = 0; f < kAdjointLanes; ++f) event_adjoint_[g][f] += jump * adjoint_[g][i][f];
+      }
+    }
+  }
+
+  /// Slope over phase of the mesh force at the start, middle or end of a piece, by the parabola
+  /// through its values there.
+  double force_slope(std::size_t index, int part) const {
+    const auto force = [&](int i) { return contacts_.at(index, i).mesh_force; };
+    const double rise = force(2) - force(0), bend = 2 * (force(0) - 2 * force(1) + force(2));
+    return (rise + (part - 1) * bend) / orbit_.pieces[index].length;
+  }
+
+  /// Derivatives by the section states.
+  using ByState = std::array<double, kRates>;
+  static ByState by_state(const DifferentiatedInstant& at, const ArmSlopes& by_motion) {
+    ByState out{};
+    const StageSlopes& s = at.slopes;
+    out[kWinding] = by_motion[0] * s.force_by_winding;
+    out[kPinionSpeed] = by_motion[0] * s.damping * s.relative_radius + by_motion[1];
+    out[kGearSpeed] = -by_motion[0] * s.damping * s.gear_radius + by_motion[2];
+    return out;
+  }
+
+  /// Adds what the change of the event at the end of a piece does through the state there: there
+  /// the transmission error is that of touching flanks, or the mesh force is 0.
+  void pass_event(std::size_t index) {
+    const OrbitPiece& p = orbit_.pieces[index];
+    const bool touch = p.regime.side != orbit_.pieces[index + 1].regime.side;
+    const DifferentiatedInstant& end = part_[2];
+    ByState zero{};
+    if (touch) {
+      zero[kWinding] = end.error_by_winding;
+    } else {
+      zero = by_state(end, {1, 0, 0});
+    }
+    const double slope = touch ? contacts_.at(index, 2).transmission_velocity * end.slopes.time
+                               : force_slope(index, 2);
+    for (int i = 1; i < kRates; ++i) {
+      const double change = -zero[i] / slope;
+      for (int g = 0; g < kGroups; ++g) {
+        for (int f = 0; f < kAdjointLanes; ++f) adjoint_[g][i][f] += change * event_adjoint_[g][f];
+      }
+    }
+  }
+
+  void pass_piece(std::size_t index) {
+    const OrbitPiece& p = orbit_.pieces[index];
+    const bool begins = index > 0 && is_event(index - 1);
+    const bool ends = index + 1 < orbit_.pieces.size() && is_event(index);
+    for (StateAdjoint& each : direct_) each = {};
+    AdjointRow begin_adjoint{};
+    add_integrals(index, begins, ends, begin_adjoint);
+    if (minimum_.piece == index) differentiate_extreme(p, minimum_, kMinimum);
+    if (maximum_.piece == index) differentiate_extreme(p, maximum_, kMaximum);
+    if (ends) pass_event(index);
+    event_adjoint_ = {};
+    event_adjoint_[kOfFigures] = begin_adjoint;
+
+    PieceSlopes slopes;
+    slopes.length = p.length;
+    slopes.stages = {&part_[0].slopes, &stage_[1].slopes, &stage_[2].slopes, &stage_[3].slopes};
+    for (int part = 0; part < 3; ++part) {
+      slopes.parts[part] = &part_[part].slopes;
+      const ContactsAt& at = contacts_.at(index, part);
+      slopes.arm[part] = {at.arm[0], at.arm[1]};
+    }
+    for (int g = 0; g < kGroups; ++g) {
+      PieceAdjoint by;
+      pass_back(instruction_set_, constants_, slopes, g == kOfFigures ? &direct_ : nullptr,
+                adjoint_[g], by);
+      for (int f = 0; f < kAdjointLanes; ++f) {
+        by_pinion_torque_[g][f] += by.pinion_torque[f];
+        by_wheel_torque_[g][f] += by.wheel_torque[f];
+      }
+      for (int part = 0; part < 3; ++part) {
+        contacts_.weigh_arms(contacts_.at(index, part), g, by.arm[part]);
+      }
+    }
+  }
+
+  double input_speed(const MarchState& y) const {
+    return system_.input_speed(y[kPinionShaftSpeed], y[kWheelSpeed]);
+  }
+
+  /// The integrals of a piece by Simpson's rule. An end of the piece that is an event moves with
+  /// it, and the middle half as far. Where the load begins or ends, the integrands stay 0; at a
+  /// fixed phase they would have infinite derivatives, because they rise there like a power below 1
+  /// of the force. Elsewhere their change with phase is that with the force; all else changes
+  /// little within a piece.
+  void add_integrals(std::size_t index, bool begins, bool ends, AdjointRow& begin_adjoint) {
+    const OrbitPiece& p = orbit_.pieces[index];
+    AdjointRow sum{};
+    for (int part = 0; part < 3; ++part) {
+      const ContactsAt& at = contacts_.at(index, part);
+      if (!(p.regime.load(at.mesh_force) > kNoLoad * light_load_)) continue;
+      const MarchState& y = state_of(p, part);
+      const double per_phase = system_.cycle_angle() / y[kPinionSpeed];
+      const double weight = p.length / 6 * (part == 1 ? 4 : 1) * per_phase;
+      const double speed = input_speed(y), share = at.sum[kLossSum] / speed;
+      const double by_loss = 2 * share / speed;  // of the square
+      const bool moves = part == 0 ? begins : part == 2 ? ends : begins || ends;
+      const double force_change = moves ? weight * force_slope(index, part) : 0;
+      for (int f = 0; f < kIntegrals; ++f) {
+        const bool squared = f == kSquaredLoss;
+        const double value = weight * (squared ? share * share : at.sum[f]);
+        ArmSlopes slopes = at.sum_slopes[squared ? kLossSum : f];
+        if (squared) {
+          for (double& each : slopes) each *= by_loss;
+        }
+        ByState by = by_state(part_[part], slopes);
+        for (double& each : by) each *= weight;
+        by[kPinionSpeed] -= value / y[kPinionSpeed];
+        if (squared) {
+          // By the speed at which the power comes in.
+          by[kPinionShaftSpeed] -= weight * by_loss * share * system_.input_speed(1, 0);
+          by[kWheelSpeed] -= weight * by_loss * share * system_.input_speed(0, 1);
+        }
+        for (int i = 1; i < kRates; ++i) direct_[part][i][f] += by[i];
+        sum[f] += value;
+        // Of the events' phases.
+        begin_adjoint[f] += begins ? (1 - 0.5 * part) * force_change * slopes[0] : 0;
+        event_adjoint_[kOfFigures][f] += ends ? 0.5 * part * force_change * slopes[0] : 0;
+      }
+      contacts_.weigh_sums(at, weight, kSquaredLoss, weight * by_loss);
+    }
+    for (int f = 0; f < kIntegrals; ++f) {
+      integral_[f] += sum[f];
+      if (begins) begin_adjoint[f] -= sum[f] / p.length;
+      if (ends) event_adjoint_[kOfFigures][f] += sum[f] / p.length;
+    }
+  }
+
+  struct Extreme {
+    double value;
+    std::size_t piece = 0;
+    int half = 0;
+    double t = 0;  // in the half
+  };
+  /// Of the cubic through both ends of the half, at its place.
+  void differentiate_extreme(const OrbitPiece& p, const Extreme& extreme, int lane) {
+    const double t = extreme.t, u = 1 - t;
+    const double value[2] = {(1 + 2 * t) * u * u, (1 + 2 * u) * t * t};
+    const double slope[2] = {t * u * u, -t * t * u};
+    const double h = state_of(p, extreme.half + 1)[kTime] - state_of(p, extreme.half)[kTime];
+    double by_h = 0;
+    for (const int end : {0, 1}) {
+      const DifferentiatedInstant& at = part_[extreme.half + end];
+      StateAdjoint& to = direct_[extreme.half + end];
+      to[kWinding][lane] +=
+          value[end] * at.error_by_winding + h * slope[end] * at.velocity_by_winding;
+      to[kPinionSpeed][lane] += h * slope[end] * at.slopes.relative_radius;
+      to[kGearSpeed][lane] -= h * slope[end] * at.slopes.gear_radius;
+      by_h += slope[end] * contacts_.at(extreme.piece, extreme.half + end).transmission_velocity;
+    }
+    direct_[extreme.half + 1][kTime][lane] += by_h;
+    direct_[extreme.half][kTime][lane] -= by_h;
+  }
+
+  std::optional<OrbitSensitivity> close() {
+    // Equations: states return, the period takes its time. Unknowns: states, the unknown torque.
+    using Square = Eigen::Matrix<double, kRates, kRates>;
+    const double time = orbit_.period * system_.cycle_angle() / mean_speed_;
+    const auto& by_unknown = solve_wheel_torque_ ? by_wheel_torque_ : by_pinion_torque_;
+    const auto& by_known = solve_wheel_torque_ ? by_pinion_torque_ : by_wheel_torque_;
+    // By the unknowns: of the equations, each over its scale; of what the figures are made of.
+    Square jacobian, figures;
+    const double torque_scale = scales_.torque;
+    for (int j = 0; j < kRates; ++j) {
+      const bool torque = j == kSectionStates;
+      const double scale = torque ? torque_scale : scales_.of(system_.mesh(), j + 1);
+      for (int f = 0; f < kAdjointLanes; ++f) {
+        const auto by = [&](int g) { return torque ? by_unknown[g][f] : adjoint_[g][j + 1][f]; };
+        jacobian(f, j) = scale * (by(kOfEnd) - (f == j + 1 ? 1 : 0));
+        figures(f, j) = scale * by(kOfFigures);
+      }
+    }
+    for (int f = 0; f < kRates; ++f) {
+      jacobian.row(f) /= f == kTime ? time : scales_.of(system_.mesh(), f);
+    }
+    const Eigen::PartialPivLU<Square> factors(jacobian);
+    if (!(factors.rcond() > 1e-12)) return std::nullopt;
+    // What a residual of each equation does to the figures and to the unknown torque.
+    Eigen::Matrix<double, kRates, kRates + 1> right;
+    right.leftCols<kRates>() = figures.transpose();
+    right.col(kRates).setZero();
+    right(kSectionStates, kRates) = torque_scale;
+    Eigen::Matrix<double, kRates, kRates + 1> solved;
+    solved = factors.transpose().solve(right);
+    Eigen::Matrix<double, kRates + 1, kRates> by_residual = solved.transpose();
+    for (int f = 0; f < kRates; ++f) {
+      by_residual.col(f) /= f == kTime ? time : scales_.of(system_.mesh(), f);
+    }
+    if (!by_residual.allFinite()) return std::nullopt;
+
+    using ByOrbitParameters = Eigen::Matrix<double, 1, kOrbitParameters>;
+    Eigen::Matrix<double, kRates + 1, kOrbitParameters> total;
+    Eigen::Matrix<double, kRates, kOrbitParameters> of_end, direct;
+    const OrbitContacts::ByParameters by_parameter = contacts_.by_parameters();
+    of_end.leftCols<kContactParameters>() = by_parameter.topRows<kRates>();
+    direct.leftCols<kContactParameters>() = by_parameter.bottomRows<kRates>();
+    for (int f = 0; f < kAdjointLanes; ++f) {
+      of_end(f, kKnownTorqueParameter) = by_known[kOfEnd][f];
+      direct(f, kKnownTorqueParameter) = by_known[kOfFigures][f];
+      of_end(f, kMeanSpeedParameter) = f == kTime ? time / mean_speed_ : 0;
+      direct(f, kMeanSpeedParameter) = 0;
+    }
+    total.noalias() = -by_residual * of_end;
+    total.topRows<kRates>() += direct;
+
+    ByOrbitParameters torque[2] = {ByOrbitParameters::Zero(), ByOrbitParameters::Zero()};
+    torque[solve_wheel_torque_ ? 1 : 0] = total.row(kRates);
+    torque[solve_wheel_torque_ ? 0 : 1](kKnownTorqueParameter) = 1;
+    ByOrbitParameters speed = ByOrbitParameters::Zero();
+    speed(kMeanSpeedParameter) = 1;
+
+    const double ratio = static_cast<double>(system_.mesh().pinion_teeth()) /
+                         static_cast<double>(system_.mesh().gear_teeth());
+    const double input = input_torque(orbit_.torques, ratio);
+    const ByOrbitParameters input_by = (orbit_.torques.pinion > 0 ? 1.0 : 0.0) * torque[0] -
+                                       (orbit_.torques.wheel < 0 ? ratio : 0.0) * torque[1];
+    OrbitSensitivity out;
+    const auto set_figure = [&](OrbitFigure figure, double value, const ByOrbitParameters& by) {
+      const auto at = static_cast<std::size_t>(figure);
+      out.figure[at] = value;
+      Eigen::Map<ByOrbitParameters>(out.derivative[at].data()) = by;
+    };
+    /// Of an integral over the period, over its time.
+    const auto set_mean = [&](OrbitFigure figure, int sum) {
+      const double value = integral_[sum] / time;
+      set_figure(figure, value, total.row(sum) / time + value / mean_speed_ * speed);
+    };
+    const auto set_ratio = [&](OrbitFigure figure, int sum) {
+      const double value = integral_[sum] / integral_[kLoadSum];
+      set_figure(figure, value,
+                 (total.row(sum) - value * total.row(kLoadSum)) / integral_[kLoadSum]);
+    };
+    set_mean(OrbitFigure::kMeshLossPower, kLossSum);
+    set_mean(OrbitFigure::kPinionFrictionTorque, kFrictionTorqueSum);
+    set_ratio(OrbitFigure::kFilmRatio, kFilmRatioLoadSum);
+    set_ratio(OrbitFigure::kContactTemperature, kTemperatureLoadSum);
+    const ByOrbitParameters loss_by = total.row(kLossSum);
+    const double turned = orbit_.period * system_.cycle_angle();
+    set_figure(OrbitFigure::kMeshLossTorque, integral_[kLossSum] / turned, loss_by / turned);
+    const double energy = 100 * integral_[kLossSum] / (input * turned);
+    set_figure(OrbitFigure::kInefficiencyEnergyMean, energy,
+               100 / (input * turned) * loss_by - energy / input * input_by);
+    const double rms = 100 / input * std::sqrt(integral_[kSquaredLoss] / time);
+    set_figure(OrbitFigure::kInefficiencyRms, rms,
+               rms * (0.5 / integral_[kSquaredLoss] * total.row(kSquaredLoss) +
+                      0.5 / mean_speed_ * speed - 1 / input * input_by));
+    set_figure(OrbitFigure::kTransmissionErrorMinimum, minimum_.value, total.row(kMinimum));
+    set_figure(OrbitFigure::kTransmissionErrorMaximum, maximum_.value, total.row(kMaximum));
+    constexpr double kLittleForce = 0.01;  // of the mean force
+    constexpr double kLittleSpeed = 0.01;  // of the greatest one
+    out.one_sided = contacts_.one_sided() ||
+                    least_touch_speed_ < kLittleSpeed * greatest_touch_speed_ ||
+                    (!orbit_.contact_loss && orbit_.least_pressing_force < kLittleForce);
+    return out;
+  }
+
+  GearPairSystem& system_;
+  const MeshGrid& grid_;
+  const PeriodicOrbit& orbit_;
+  FrozenFriction friction_;
+  double mean_speed_;
+  bool solve_wheel_torque_;
+  MarchScales scales_;
+  double light_load_;
+  InstructionSet instruction_set_;
+  SensitivityConstants constants_;
+  ContactSensitivityModel model_;
+  OrbitContacts contacts_;
+  /// Of the piece at hand, and the start of the one behind it.
+  DifferentiatedInstant part_[3]{}, stage_[4]{}, behind_{};
+  std::array<StateAdjoint, 3> direct_;
+  std::array<StateAdjoint, kGroups> adjoint_{};
+  std::array<AdjointRow, kGroups> event_adjoint_{};  ///< of the phase of the event at a piece's end
+  std::array<AdjointRow, kGroups> by_pinion_torque_{}, by_wheel_torque_{};
+  AdjointRow integral_{};
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  double least_touch_speed_ = kInfinity, greatest_touch_speed_ = 0;  ///< [m/s]
+  Extreme minimum_{kInfinity}, maximum_{-kInfinity};
+};
+
+}  // namespace
+
+std::optional<OrbitSensitivity> orbit_sensitivity(const PeriodicProblem& problem,
+                                                  const PeriodicOrbit& orbit) {
+  return OrbitDifferentiator(problem, orbit).run();
+}
+
+}  // namespace tribodyn

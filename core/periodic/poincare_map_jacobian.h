@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/LU>
+#include <limits>
+
+#include "core/integrate/step_sensitivity.h"
+
+namespace tribodyn {
+
+/// The linearised Poincare map of an orbit: derivatives of the state and the time after a period by
+/// the state at mesh phase 0 and the unknown torque. Its eigenvalues without the torque are the
+/// Floquet multipliers. One multiplier is 1, because the train as a whole runs on at any speed: all
+/// bounds and moduli leave out the multiplier nearest to 1.
+class PoincareMapJacobian {
+ public:
+  static constexpr int kUnknowns = 8;  // the seven states and the torque
+  using Vector = Eigen::Matrix<double, kUnknowns, 1>;
+
+  /// `scale`: of the unknowns. `period`: of the time's residual [s].
+  PoincareMapJacobian(const Sensitivity& sensitivity, const Vector& scale, double period);
+
+  /// Newton's step from a residual, both scaled.
+  Vector step(const Vector& residual) const { return factors_.solve(-residual); }
+  /// Largest modulus of the Floquet multipliers. Computed once; later copies hold it.
+  double largest_multiplier() const;
+  /// Whether the multiplier of the largest modulus is negative: a disturbance then changes its side
+  /// every period.
+  bool leading_multiplier_is_negative() const;
+  /// Whether the largest modulus is proven to be below a limit, by norms of powers: cheaper than
+  /// eigenvalues. Returns false if there is no proof, mostly within a percent of the limit. A proof
+  /// is remembered.
+  bool floquet_radius_below(double limit) const;
+  /// Lower bound of the distance of every multiplier from -1, where the period doubles (flip).
+  /// Computed once.
+  double flip_margin() const;
+  /// The eigenvector of the multiplier nearest to -1, of length 1; scaled, without the torque.
+  /// Requires a multiplier near -1.
+  Eigen::Matrix<double, kUnknowns - 1, 1> flip_direction() const;
+
+ private:
+  double bound_of_floquet_radius(double enough) const;
+
+  Eigen::PartialPivLU<Eigen::Matrix<double, kUnknowns, kUnknowns>> factors_;
+  Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1> monodromy_;  // scaled
+  mutable bool leading_multiplier_is_negative_ = false;
+  mutable double largest_multiplier_ = -1;  // not computed yet
+  mutable double flip_margin_ = -1;
+  mutable double floquet_radius_bound_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace tribodyn

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "core/periodic/periodic_orbit.h"
+#include "core/periodic/periodic_problem.h"
+
+namespace tribodyn {
+
+/// Share of a tolerance for the error of the steps; the rest is for the Picard iteration.
+inline constexpr double kShareOfSteps = 0.75;
+
+/// A lubricant's losses may follow the mesh force more than those of Coulomb's friction do: what
+/// the steps do to its figures is at most so many times the error of a reference orbit.
+inline constexpr double kReferenceCaution = 3;
+
+/// Finds the orbit from `origin` under Coulomb's friction in place of a lubricant's, on one grid
+/// after another, until the error of the steps is small enough for kLooseTolerance. The orbits of
+/// all lubricants are near, and the steps do nearly the same to them. `estimated_error` is that of
+/// the steps; infinite if it is not known. Returns nothing if there is no such orbit. `least`:
+/// steps of the first grid.
+std::vector<PeriodicOrbit> reference_orbits(const PeriodicProblem& problem,
+                                            const ShootingOptions& options,
+                                            const PeriodicOrbit& origin, int least);
+
+/// A bounded cache of reference orbits, keyed by gear set, load, speed and start alone: a hit is
+/// bit-identical to recomputation. Of one gear set and its options; one thread at a time.
+class ReferenceOrbits {
+ public:
+  /// As reference_orbits(). Valid until the next call.
+  const std::vector<PeriodicOrbit>& find(const PeriodicProblem& problem,
+                                         const ShootingOptions& options,
+                                         const PeriodicOrbit& origin, int least);
+
+ private:
+  static constexpr int kMostStepsKept = 20'000;  // of some 2 KB each
+  using Key = std::array<double, 8 + kMarchComponents>;
+
+  std::map<Key, std::vector<PeriodicOrbit>> found_;
+  int steps_kept_ = 0;
+};
+
+}  // namespace tribodyn

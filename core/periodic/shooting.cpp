@@ -1,0 +1,74 @@
+#include "core/periodic/shooting.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace tribodyn {
+namespace {
+
+MarchScales scales_at(const Torques& torques, GearPairSystem& system, double mean_pinion_speed) {
+  system.set_torques(torques);
+  return march_scales(system, mean_pinion_speed);
+}
+
+}  // namespace
+
+Shooting::Shooting(const PeriodicProblem& problem, OrbitFriction& friction, const MeshGrid& grid,
+                   const ShootingOptions& options, PeriodicOrbit& orbit)
+    : problem_(problem),
+      system_(problem.system),
+      friction_(friction),
+      grid_(grid),
+      options_(options),
+      orbit_(orbit),
+      scales_(scales_at(orbit.torques, system_, problem.mean_pinion_speed)),
+      mean_force_(scales_.torque / system_.mesh().mean_pinion_contact_radius()),
+      period_time_(orbit.period * system_.cycle_angle() / problem.mean_pinion_speed) {
+  for (int i = 0; i + 1 < kUnknowns; ++i) scale_(i) = scales_.of(system_.mesh(), i + 1);
+  scale_(kUnknowns - 1) = scales_.torque;
+}
+
+bool Shooting::solve(double tolerance) {
+  // Near a doubling, where the roots of one and of two periods are close to each other, each of
+  // Newton's steps leaves two thirds of the error.
+  constexpr int kMostNewtonSteps = 20, kMostDerivatives = 6, kMostWhileShrinking = 16;
+  constexpr double kShrinking = 0.8;
+  double last = 0;
+  int derivatives = 0;
+  for (int i = 0; i < kMostNewtonSteps; ++i) {
+    if (!orbit_.jacobian) ++derivatives;
+    const double left = orbit_.defect = newton_step();
+    if (!(left < 1e9)) return false;
+    if (left < tolerance) return true;
+    if (i > 0 && left > 0.2 * last) {
+      if (derivatives >= (left < kShrinking * last ? kMostWhileShrinking : kMostDerivatives)) {
+        return false;
+      }
+      orbit_.jacobian.reset();
+    }
+    last = left;
+  }
+  return false;
+}
+
+void Shooting::throw_if_interrupted() const {
+  if (problem_.interrupted && problem_.interrupted()) throw Cancelled();
+}
+
+void Shooting::add_to_unknown(double change) {
+  Torques t = system_.torques();
+  (problem_.solve_wheel_torque ? t.wheel : t.pinion) += change;
+  system_.set_torques(t);
+}
+
+bool Shooting::evaluate_friction(Nodes nodes) {
+  std::swap(friction_before_, orbit_.friction);
+  if (!evaluate(nodes)) return false;
+  orbit_.friction_change = orbit_.friction.distance(friction_before_);
+  orbit_.least_pressing_force = friction_.least_pressing_force() / mean_force_;
+  orbit_.figures.torque =
+      problem_.solve_wheel_torque ? system_.torques().wheel : system_.torques().pinion;
+  return true;
+}
+
+}  // namespace tribodyn

@@ -1,0 +1,98 @@
+#include "core/periodic/single_shooting.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/periodic/period_correction.h"
+
+namespace tribodyn {
+
+SingleShooting::SingleShooting(const PeriodicProblem& problem, OrbitFriction& friction,
+                               const MeshGrid& grid, const ShootingOptions& options,
+                               PeriodicOrbit& orbit)
+    : Shooting(problem, friction, grid, options, orbit),
+      march_(system_, scales_, grid, orbit.period, problem.solve_wheel_torque,
+             std::clamp(1e-4 * options.tolerance, 1e-12, 1e-9), friction.instruction_set()) {}
+
+bool SingleShooting::march(MarchState& state, Sensitivity* s) {
+  throw_if_interrupted();
+  start_regime(state);
+  return march_.run(orbit_.friction, options_.bilateral_contact, state, s, &orbit_.pieces);
+}
+
+bool SingleShooting::march_transient(int cycles) {
+  constexpr int kRenewal = 20;
+  for (int i = 0; i < cycles; ++i) {
+    MarchState y = orbit_.state;
+    if (!march(y, nullptr)) return false;
+    if (options_.renew_friction && i % kRenewal == 0 && !evaluate_friction()) return false;
+    correct_period(system_, orbit_.state, orbit_.period, problem_.mean_pinion_speed,
+                   problem_.solve_wheel_torque, y);
+    orbit_.state = y;
+  }
+  return true;
+}
+
+bool SingleShooting::renew_jacobian() {
+  constexpr double kHere = 1e-4;
+  if (orbit_.distance_since_jacobian < kHere && orbit_.pieces_of_jacobian == orbit_.pieces.size())
+    return true;
+  MarchState y = orbit_.state;
+  Sensitivity sensitivity;
+  start_regime(y);
+  if (!march_.run(orbit_.friction, options_.bilateral_contact, y, &sensitivity, nullptr))
+    return false;
+  orbit_.jacobian.emplace(sensitivity, scale_, period_time_);
+  orbit_.distance_since_jacobian = 0;
+  orbit_.pieces_of_jacobian = orbit_.pieces.size();
+  return true;
+}
+
+double SingleShooting::newton_step() {
+  constexpr double kBrokenDown = std::numeric_limits<double>::quiet_NaN();
+  MarchState y = orbit_.state;
+  if (orbit_.jacobian) {
+    if (!march(y, nullptr)) return kBrokenDown;
+  } else {
+    Sensitivity sensitivity;
+    if (!march(y, &sensitivity)) return kBrokenDown;
+    orbit_.jacobian.emplace(sensitivity, scale_, period_time_);
+    orbit_.distance_since_jacobian = 0;
+    orbit_.pieces_of_jacobian = orbit_.pieces.size();
+  }
+  PoincareMapJacobian::Vector residual;
+  for (int i = 0; i + 1 < kUnknowns; ++i) {
+    residual(i) = (y[i + 1] - orbit_.state[i + 1]) / scale_(i);
+  }
+  residual(kUnknowns - 1) = y[kTime] / period_time_ - 1;
+  const PoincareMapJacobian::Vector step = orbit_.jacobian->step(residual);
+  for (int i = 0; i + 1 < kUnknowns; ++i) orbit_.state[i + 1] += scale_(i) * step(i);
+  add_to_unknown(scale_(kUnknowns - 1) * step(kUnknowns - 1));
+  orbit_.distance_since_jacobian += step.norm();
+  return step.norm();
+}
+
+bool SingleShooting::evaluate(Nodes) {
+  orbit_.contact_loss = std::any_of(orbit_.pieces.begin(), orbit_.pieces.end(),
+                                    [](const OrbitPiece& p) { return p.regime.side == 0; });
+  return friction_.evaluate(grid_, orbit_.pieces, light_load(), orbit_.friction, orbit_.figures);
+}
+
+void SingleShooting::start_regime(const MarchState& state) {
+  if (options_.bilateral_contact) {
+    system_.regime = {side(), true};
+  } else {
+    system_.regime = system_.regime_of(0, state.data());
+  }
+  orbit_.regime = system_.regime;
+}
+
+void SingleShooting::finish(SolverWork& work) {
+  work.right_hand_sides += march_.evaluations();
+  work.accepted_steps += march_.steps();
+  work.events += march_.events();
+  work.mesh_cycles += march_.steps() / grid_.steps();
+  orbit_.torques = system_.torques();
+}
+
+}  // namespace tribodyn

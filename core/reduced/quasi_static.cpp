@@ -1,0 +1,359 @@
+#include "core/reduced/quasi_static.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/numerics/square.h"
+#include "core/periodic/grid_convergence.h"
+#include "core/reduced/linear_response.h"
+#include "core/refusal.h"
+
+namespace tribodyn {
+namespace {
+
+// Limits of the estimate of the model's error.
+constexpr double kMargin = 1.5;      // on the first-order change by inertia
+constexpr double kMostGrowth = 0.5;  // see InertialCorrection
+constexpr double kLeastForce = 0.4;  // smallest over mean mesh force
+
+/// Side of the flanks that carry.
+int side_of(const GearPairSystem& system) { return system.torques().pinion >= 0 ? 1 : -1; }
+
+/// Equilibria at the nodes of a grid.
+std::vector<MarchState> equilibria(const GearPairSystem& system, const MeshGrid& grid,
+                                   FrozenFriction& friction, double speed) {
+  const int last = 2 * grid.steps();
+  std::vector<MarchState> out(last + 1);
+  for (int n = 0; n <= last; ++n) {
+    const double phase = static_cast<double>(n) / last;
+    out[n] = static_equilibrium(system, grid.at(n), phase, friction.at(phase), speed);
+  }
+  return out;
+}
+
+std::vector<OrbitPiece> pieces_of(const GearPairSystem& system,
+                                  const std::vector<MarchState>& nodes) {
+  const int steps = static_cast<int>(nodes.size() / 2);
+  std::vector<OrbitPiece> out(steps);
+  for (int i = 0; i < steps; ++i) {
+    out[i] = {static_cast<double>(i) / steps,
+              1.0 / steps,
+              2 * i,
+              system.regime,
+              nodes[2 * i],
+              nodes[2 * i + 1],
+              nodes[2 * i + 2]};
+  }
+  return out;
+}
+
+/// The unknown torque that the mean power asks for.
+double torque_of(const PeriodicProblem& problem, double loss) {
+  const GearPairSystem& system = problem.system;
+  const MeshData& mesh = system.mesh();
+  const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
+  const double drag = loss / problem.mean_pinion_speed;
+  return problem.solve_wheel_torque ? (system.torques().pinion - drag) / ratio
+                                    : ratio * system.torques().wheel + drag;
+}
+
+void set_unknown(const PeriodicProblem& problem, double torque) {
+  Torques torques = problem.system.torques();
+  (problem.solve_wheel_torque ? torques.wheel : torques.pinion) = torque;
+  problem.system.set_torques(torques);
+}
+
+/// Extremes of a smooth periodic function by parabolas through its nodes; the last node repeats the
+/// first.
+void extremes_of(const std::vector<double>& v, double& low, double& high) {
+  const int count = static_cast<int>(v.size()) - 1;
+  low = *std::min_element(v.begin(), v.end());
+  high = *std::max_element(v.begin(), v.end());
+  const double node_low = low, node_high = high;
+  for (int n = 0; n < count; ++n) {
+    if (v[n] != node_low && v[n] != node_high) continue;
+    const double before = v[(n + count - 1) % count], after = v[n + 1];
+    const double bend = before - 2 * v[n] + after, slope = 0.5 * (after - before);
+    if (bend == 0 || std::abs(slope) > std::abs(bend)) continue;
+    const double vertex = v[n] - 0.5 * slope * slope / bend;
+    low = std::min(low, vertex);
+    high = std::max(high, vertex);
+  }
+}
+
+/// x at the nodes.
+std::vector<double> transmission_errors(const GearPairSystem& system, const MeshGrid& grid,
+                                        const std::vector<MarchState>& nodes) {
+  std::vector<double> out(nodes.size());
+  Instant at;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    system.kinematics(grid.at(static_cast<int>(n)), nodes[n].data(), at);
+    out[n] = at.transmission_error;
+  }
+  return out;
+}
+
+/// The Picard iteration of load and friction on one grid.
+class PicardIteration {
+ public:
+  explicit PicardIteration(const PeriodicProblem& problem)
+      : problem_(problem), system_(problem.system), friction_(problem.system, problem.contacts) {}
+
+  /// Iterates from the friction and the figures of `orbit` until the Picard error is below
+  /// `enough`.
+  bool solve(const MeshGrid& grid, double enough, PeriodicOrbit& orbit) {
+    constexpr int kMostIterations = 30;
+    constexpr double kUnmeasured = 0.1;
+    double last_change = 0;
+    for (int i = 0; i < kMostIterations; ++i) {
+      if (problem_.interrupted && problem_.interrupted()) throw Cancelled();
+      const bool first = contraction_ == 0;
+      const OrbitFigures previous = orbit.figures;
+      if (!evaluate(grid, orbit)) return false;
+      if (first) {
+        contraction_ = kUnmeasured;
+        continue;
+      }
+      const double change = orbit.figures.distance(previous);
+      if (last_change > 0) contraction_ = std::clamp(change / last_change, 0.01, 0.9);
+      last_change = change;
+      orbit.picard_error = change * contraction_ / (1 - contraction_);
+      if (orbit.picard_error > enough && !(change < 1e-13)) continue;
+      orbit.contacts = friction_.take_contacts();
+      return true;
+    }
+    return false;
+  }
+
+ private:
+  bool evaluate(const MeshGrid& grid, PeriodicOrbit& orbit) {
+    const double speed = problem_.mean_pinion_speed;
+    const std::vector<MarchState> nodes = equilibria(system_, grid, orbit.friction, speed);
+    orbit.pieces = pieces_of(system_, nodes);
+    if (!friction_.evaluate(grid, orbit.pieces, 0, orbit.friction, orbit.figures)) return false;
+    OrbitFigures& f = orbit.figures;
+    extremes_of(transmission_errors(system_, grid, nodes), f.dte_minimum, f.dte_maximum);
+    f.torque = torque_of(problem_, f.loss_energy * speed / system_.cycle_angle());
+    set_unknown(problem_, f.torque);
+    orbit.torques = system_.torques();
+    orbit.state = nodes.front();
+    return true;
+  }
+
+  const PeriodicProblem& problem_;
+  GearPairSystem& system_;
+  OrbitFriction friction_;
+  double contraction_ = 0;  // of the error by one iteration; 0: none made yet
+};
+
+/// What the equilibria at a grid's nodes ask of the driveline. `friction`: what holds them.
+ImposedMotion imposed_motion(const GearPairSystem& system, const MeshGrid& grid,
+                             const std::vector<MarchState>& nodes, FrozenFriction& friction) {
+  const std::size_t count = nodes.size() - 1;
+  ImposedMotion out;
+  out.resize(count);
+  if (system.options().energy_consistent) out.pinion_torque.resize(count);
+  Instant at;
+  for (std::size_t n = 0; n < count; ++n) {
+    const double phase = static_cast<double>(n) / static_cast<double>(count);
+    system.kinematics(grid.at(static_cast<int>(n)), nodes[n].data(), at);
+    out.winding[n] = nodes[n][kWinding];
+    out.transmission_error[n] = at.transmission_error;
+    out.mesh_stiffness[n] = at.mesh.mesh_stiffness;
+    out.gear_torque[n] = at.mesh.gear_contact_radius * at.mesh_force +
+                         friction.at(phase).gear * std::abs(at.mesh_force) - system.torques().wheel;
+    if (!out.pinion_torque.empty()) out.pinion_torque[n] = at.parametric_torque();
+  }
+  return out;
+}
+
+/// The corrected motion at the nodes.
+std::vector<MarchState> corrected(const GearPairSystem& system, const MeshGrid& grid,
+                                  std::vector<MarchState> nodes, const InertialCorrection& change) {
+  const double lag = system.mesh().gear_teeth() / system.mesh().mean_gear_contact_radius();
+  const std::size_t count = nodes.size() - 1;
+  for (std::size_t n = 0; n <= count; ++n) {
+    const std::size_t i = n % count;
+    MarchState& y = nodes[n];
+    y[kWinding] += change.transmission_error[i];
+    y[kPinionSpeed] += change.pinion_speed[i];
+    y[kPinionShaftSpeed] += change.pinion_shaft_speed[i];
+    const MeshFunctions f =
+        system.mesh().functions(grid.at(static_cast<int>(n)), lag * y[kWinding]);
+    y[kGearSpeed] =
+        ((f.pinion_contact_radius - f.static_transmission_error_slope) * y[kPinionSpeed] -
+         change.transmission_velocity[i]) /
+        f.gear_contact_radius;
+  }
+  return nodes;
+}
+
+/// Power that the dampers and the torques that eq 2 leaves out take, the mean of it [W].
+double other_losses(const GearPairSystem& system, const MeshGrid& grid,
+                    const std::vector<MarchState>& nodes) {
+  const std::size_t count = nodes.size() - 1;
+  double sum = 0;
+  Instant at;
+  for (std::size_t n = 0; n < count; ++n) {
+    const MarchState& y = nodes[n];
+    system.kinematics(grid.at(static_cast<int>(n)), y.data(), at);
+    sum += at.damper_force * at.transmission_velocity +
+           system.dynamics().pinion_shaft_damping * square(y[kPinionShaftSpeed] - y[kPinionSpeed]);
+    if (!system.options().energy_consistent) sum += at.parametric_torque() * y[kPinionSpeed];
+  }
+  return sum / static_cast<double>(count);
+}
+
+/// Smallest force at the nodes over the mean one.
+double least_force(const GearPairSystem& system, const MeshGrid& grid,
+                   const std::vector<MarchState>& nodes) {
+  double low = 1e300, sum = 0;
+  Instant at;
+  for (std::size_t n = 0; n + 1 < nodes.size(); ++n) {
+    system.kinematics(grid.at(static_cast<int>(n)), nodes[n].data(), at);
+    const double force = system.regime.side * at.mesh_force;
+    low = std::min(low, force);
+    sum += force;
+  }
+  return low * static_cast<double>(nodes.size() - 1) / sum;
+}
+
+}  // namespace
+
+MarchState static_equilibrium(const GearPairSystem& system, const MeshPhase& at, double phase,
+                              const FrictionArms& friction, double speed) {
+  const MeshData& mesh = system.mesh();
+  const double side = system.regime.side;
+  const double lag = mesh.gear_teeth() / mesh.mean_gear_contact_radius();
+  const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
+  const MeshFunctions& p = at.pinion;
+  const double force = system.torques().pinion / (p.pinion_contact_radius - side * friction.pinion);
+  const double winding = side * system.dynamics().half_backlash + force / p.mesh_stiffness +
+                         p.static_transmission_error - system.dynamics().half_backlash;
+  MarchState y{};
+  MeshFunctions f{};
+  y[kWinding] = winding;
+  for (int i = 0; i < 4; ++i) {  // R_g's ripple over the winding: contracts by 1e-2 and is tiny
+    f = system.mesh().functions(at, lag * y[kWinding]);
+    y[kWinding] = winding - f.radius_integral;
+  }
+  y[kTime] = phase * system.cycle_angle() / speed;
+  y[kPinionShaftSpeed] = y[kPinionSpeed] = speed;
+  y[kGearSpeed] =
+      (f.pinion_contact_radius - f.static_transmission_error_slope) * speed / f.gear_contact_radius;
+  y[kWheelSpeed] = ratio * speed;
+  y[kPinionShaftTwist] = system.torques().pinion / system.dynamics().pinion_shaft_stiffness;
+  y[kGearShaftTwist] = system.torques().wheel / system.dynamics().gear_shaft_stiffness;
+  return y;
+}
+
+std::optional<PeriodicOrbit> solve_quasi_static(const PeriodicProblem& problem) {
+  GearPairSystem& system = problem.system;
+  system.regime = {side_of(system), true};
+  PicardIteration iteration(problem);
+  PeriodicOrbit best;
+  const StepSequence sequence(system.mesh().intervals(),
+                              problem.tolerance < kLooseTolerance ? 24 : 12);
+  const auto after = [&](int steps) {
+    return sequence.after(steps, best.estimated_error / problem.tolerance);
+  };
+  for (int steps = sequence.first();; steps = after(steps)) {
+    const bool first = best.steps_per_mesh_cycle == 0;
+    const double enough = first ? std::max(5 * problem.tolerance, 1e-4) : 0.2 * problem.tolerance;
+    const OrbitFigures coarser = best.figures;
+    if (!iteration.solve(problem.grids.with_steps(steps), enough, best)) return std::nullopt;
+    if (!first) {
+      const double finer = static_cast<double>(steps) / best.steps_per_mesh_cycle;
+      const double change = best.figures.distance(coarser);
+      best.estimated_error =
+          step_error(change, square(finer), best.estimated_error, finer) + best.picard_error;
+    }
+    best.steps_per_mesh_cycle = steps;
+    const bool enough_steps = !first && best.estimated_error <= problem.tolerance;
+    if (enough_steps || after(steps) > kMostStepsPerCycle) break;
+  }
+  best.regime = system.regime;
+  return best;
+}
+
+double quasi_static_model_error(const PeriodicProblem& problem, const PeriodicOrbit& solution) {
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  GearPairSystem& system = problem.system;
+  const double speed = problem.mean_pinion_speed;
+  const MeshGrid& grid = problem.grids.with_steps(solution.steps_per_mesh_cycle);
+  FrozenFriction friction = solution.friction;
+  const std::vector<MarchState> still = equilibria(system, grid, friction, speed);
+  const ImposedMotion motion = imposed_motion(system, grid, still, friction);
+  const InertialCorrection change = inertial_correction(system, speed, motion);
+  if (!(change.growth < kMostGrowth)) return kUnknown;
+  if (parametric_resonance_possible(system, speed, motion.mesh_stiffness)) return kUnknown;
+  const std::vector<MarchState> moving = corrected(system, grid, still, change);
+  const double unresolved_force = change.unresolved * system.mesh().mean_mesh_stiffness() *
+                                  system.mesh().mean_pinion_contact_radius() /
+                                  std::abs(system.torques().pinion);
+  if (!(least_force(system, grid, moving) - unresolved_force > kLeastForce)) return kUnknown;
+
+  OrbitFriction together(system, problem.contacts);
+  OrbitFigures figures;
+  if (!together.evaluate(grid, pieces_of(system, moving), 0, friction, figures)) {
+    system.take_refusal();
+    return kUnknown;
+  }
+  const double loss = figures.loss_energy * speed / system.cycle_angle();
+  figures.torque = torque_of(problem, loss + other_losses(system, grid, moving));
+  const double first_order = figures.distance(solution.figures);
+  const double size = std::max(std::abs(figures.dte_minimum), std::abs(figures.dte_maximum));
+  return kMargin * first_order / (1 - change.growth) + change.unresolved / size;
+}
+
+bool passes_quasi_static_screen(const PeriodicProblem& problem) {
+  constexpr int kFewSteps = 4;  // three harmonics
+  constexpr double kDoubt = 4;  // extremes move by less than the largest correction
+  GearPairSystem& system = problem.system;
+  MeshGrids& grids = problem.grids;
+  if (system.torques().pinion == 0) return false;
+  system.regime = {side_of(system), true};
+  const double speed = problem.mean_pinion_speed;
+  const auto moved_without_friction = [&](const MeshGrid& grid, ImposedMotion& motion,
+                                          std::vector<MarchState>& still) {
+    FrozenFriction none;
+    still = equilibria(system, grid, none, speed);
+    motion = imposed_motion(system, grid, still, none);
+    motion.tail = false;
+    return inertial_correction(system, speed, motion);
+  };
+  ImposedMotion motion;
+  std::vector<MarchState> still;
+  const InertialCorrection few = moved_without_friction(grids.with_steps(kFewSteps), motion, still);
+  double size = 0;
+  for (const double x : motion.transmission_error) size = std::max(size, std::abs(x));
+  if (!(few.largest < kDoubt * problem.tolerance * size) ||
+      parametric_resonance_possible(system, speed, motion.mesh_stiffness)) {
+    return false;
+  }
+  // Friction moves the extremes by some percent only.
+  const MeshGrid& grid = grids.with_steps(StepSequence(system.mesh().intervals(), 12).first());
+  const InertialCorrection more = moved_without_friction(grid, motion, still);
+  if (!(more.growth < kMostGrowth)) return false;
+  double low = 0, high = 0, moved_low = 0, moved_high = 0;
+  extremes_of(transmission_errors(system, grid, still), low, high);
+  extremes_of(transmission_errors(system, grid, corrected(system, grid, still, more)), moved_low,
+              moved_high);
+  const double moved = std::max(std::abs(moved_low - low), std::abs(moved_high - high));
+  return kMargin * moved / (1 - more.growth) < kDoubt * problem.tolerance * size / 2;
+}
+
+bool QuasiStaticScreen::passes(const PeriodicProblem& problem) {
+  GearPairSystem& system = problem.system;
+  const std::array<double, 5> where = {problem.mean_pinion_speed, system.torques().pinion,
+                                       system.torques().wheel, problem.tolerance,
+                                       static_cast<double>(problem.solve_wheel_torque)};
+  system.regime = {side_of(system), true};
+  if (const auto known = known_.find(where); known != known_.end()) return known->second;
+  if (known_.size() >= kMost) known_.clear();
+  return known_[where] = passes_quasi_static_screen(problem);
+}
+
+}  // namespace tribodyn

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <optional>
+
+#include "core/periodic/periodic_orbit.h"
+#include "core/periodic/periodic_problem.h"
+
+namespace tribodyn {
+
+// The cheap sibling of the full model: constant speeds, xdot = 0, and at each mesh phase the load
+// at which the pinion is in equilibrium,
+//   R_p F = T_s + T_fr,p(F).
+// The unknown torque follows from the mean power. The contacts of the whole mesh cycle are solved
+// together under friction frozen in proportion to the load, and load and friction are iterated
+// (Picard): each iteration divides the error by some thirty. Grids are refined until Richardson's
+// estimate is within the tolerance. What the model leaves out is estimated by the linear response
+// to the inertia and dampers that it neglects (linear_response.h).
+
+/// The orbit's pieces hold the equilibria; it has no map. Two grids or more, until the estimate is
+/// within the tolerance or steps are finest. Sets the system's torques and regime. Returns nullopt
+/// if a contact is refused (the system has the reason) or the iteration does not converge.
+std::optional<PeriodicOrbit> solve_quasi_static(const PeriodicProblem& problem);
+
+/// The static equilibrium at a mesh phase [cycles] and a pinion speed [rad/s] under the system's
+/// torques and friction in proportion to the load, on the flanks of the system's regime.
+MarchState static_equilibrium(const GearPairSystem& system, const MeshPhase& at, double phase,
+                              const FrictionArms& friction, double speed);
+
+/// The relative distance of the quasi-static figures from those of the full model, as
+/// PointResult::estimated_relative_error means it. Inertia and dampers are added to first order
+/// (inertial_correction), the contacts solved once more on the corrected motion, and the figures
+/// compared; the ripple of the mesh stiffness, harmonics beyond the grid and a margin come on top.
+/// Infinite where the estimate is void: flanks may part, the mesh may resonate, or the ripple of
+/// the stiffness may sustain a vibration.
+double quasi_static_model_error(const PeriodicProblem& problem, const PeriodicOrbit& solution);
+
+/// Returns false if the mechanics alone, before any friction is computed, put the model's error
+/// beyond the tolerance. Costs two microseconds where that is far off, eight where it is near.
+bool passes_quasi_static_screen(const PeriodicProblem& problem);
+
+/// A bounded cache of passes_quasi_static_screen(), which does not depend on the lubricant. Of one
+/// gear set and its options; one thread at a time.
+class QuasiStaticScreen {
+ public:
+  bool passes(const PeriodicProblem& problem);
+
+ private:
+  static constexpr std::size_t kMost = 500;
+  /// Speed, torques, tolerance and which torque is unknown.
+  std::map<std::array<double, 5>, bool> known_;
+};
+
+}  // namespace tribodyn

@@ -1,0 +1,131 @@
+#include "core/study/screening.h"
+
+#include "core/study/operating_point.h"
+#include "core/study/point_by_shooting.h"
+#include "core/study/quasi_static_point.h"
+
+namespace tribodyn {
+namespace {
+
+std::optional<ContactSummary> contact_summary(const PointResult& r) {
+  if (r.film_ratio.maximum == 0) return std::nullopt;
+  return ContactSummary{
+      r.film_ratio.minimum,        r.film_ratio.mean,          r.contact_temperature.maximum,
+      r.contact_temperature.mean,  r.viscous_loss_power,       r.boundary_loss_power,
+      r.friction_coefficient.mean, r.maximum_pressure.maximum, r.flash_temperature_rise.maximum};
+}
+
+PointFigures figures_of(const PointProblem& problem, const PeriodicOrbit& orbit, PointModel model) {
+  const GearPairSystem& system = problem.system;
+  const OperatingTarget& target = problem.target;
+  PointFigures out;
+  const OrbitFigures& f = orbit.figures;
+  const double turned = orbit.period * system.cycle_angle();
+  const double torque =
+      input_torque(orbit.torques, static_cast<double>(system.mesh().pinion_teeth()) /
+                                      static_cast<double>(system.mesh().gear_teeth()));
+  out.pinion_torque = orbit.torques.pinion;
+  out.wheel_torque = orbit.torques.wheel;
+  out.inefficiency_rms = 100 * f.loss_rms / torque;
+  out.inefficiency_energy_mean = 100 * f.loss_energy / (torque * turned);
+  out.mesh_loss_power = f.loss_energy * target.mean_pinion_speed / turned;
+  out.dte_minimum = f.dte_minimum;
+  out.dte_maximum = f.dte_maximum;
+  out.contact_loss = orbit.contact_loss;
+  out.settled = true;
+  out.period_in_mesh_cycles = orbit.period;
+  out.estimated_relative_error = known_error(orbit.estimated_error);
+  out.contact_solutions = system.contact_solutions();
+  out.model = model;
+  if (problem.options.contact_summary) {
+    PointResult record = empty_result(target, model);
+    fill_from_orbit(problem, orbit, record);
+    out.contact = contact_summary(record);
+  }
+  return out;
+}
+
+enum class StepErrors { kByShorterSteps, kByReference };
+
+/// Returns nullopt if neither the quasi-static model nor shooting finds the response.
+std::optional<PointFigures> find_figures(PreparedScene& prepared,
+                                         const OperatingCondition& condition,
+                                         const PointOptions& options, StepErrors step_errors) {
+  const Scene& scene = prepared.scene();
+  const OperatingTarget target = target_of(scene, condition);
+  PreparedGearSet& gear_set = prepared.gear_set();
+  GearPairSystem system(gear_set.mesh(), prepared.contacts().model(), gear_set.gear_set().dynamics,
+                        scene.options);
+  system.set_torques(target.torques);
+  const PointProblem problem{system, prepared.contacts(), gear_set, target, options};
+  std::optional<PeriodicOrbit> quasi_static;
+  if (options.model == PointModel::kQuasiStatic && target.torques.pinion != 0) {
+    quasi_static = solve_quasi_static_with_error(problem);
+  } else if (may_choose(options, std::nullopt)) {
+    quasi_static = choose_quasi_static(problem);
+  }
+  if (quasi_static) return figures_of(problem, *quasi_static, PointModel::kQuasiStatic);
+  if (options.model == PointModel::kQuasiStatic) return std::nullopt;
+  std::optional<OrbitSearch> search = search_from(problem, options.start, std::nullopt);
+  if (!search) return std::nullopt;
+  if (step_errors == StepErrors::kByReference) search->references = &gear_set.reference_orbits();
+  SolverWork work;
+  std::optional<AperiodicMotion> aperiodic;
+  const std::optional<PeriodicOrbit> orbit =
+      find_orbit(problem.periodic(options.tolerance), *search, work, aperiodic);
+  if (!orbit) return std::nullopt;
+  PointFigures figures = figures_of(problem, *orbit, PointModel::kFull);
+  if (options.sensitivities) {
+    if (const auto sensitivity = sensitivity_of(problem, *orbit)) {
+      figures.sensitivities = point_sensitivities(scene, condition, orbit->torques, *sensitivity);
+    }
+  }
+  return figures;
+}
+
+PointFigures figures_at(PreparedScene& prepared, const OperatingCondition& condition,
+                        const PointOptions& options, StepErrors step_errors) {
+  PointOptions plain = options;
+  plain.carried_state.reset();
+  plain.probe_coexisting_response = false;
+  plain.history = {};
+  if (options.method == SteadyStateMethod::kAutomatic &&
+      !prepared.scene().options.load_dependent_mesh_data) {
+    if (auto found = find_figures(prepared, condition, plain, step_errors)) return *found;
+    // The quasi-static model has been tried.
+    if (plain.model == PointModel::kAutomatic) plain.model = PointModel::kFull;
+  }
+  return main_figures(solve_prepared_point(prepared, condition, plain));
+}
+
+}  // namespace
+
+PointFigures main_figures(const PointResult& r) {
+  return {r.pinion_torque,
+          r.wheel_torque,
+          r.inefficiency_rms,
+          r.inefficiency_energy_mean,
+          r.mesh_loss_power,
+          r.dynamic_transmission_error.minimum,
+          r.dynamic_transmission_error.maximum,
+          r.contact_loss,
+          r.settled,
+          r.period_in_mesh_cycles,
+          r.estimated_relative_error,
+          r.statistics.contact_solutions,
+          r.model,
+          contact_summary(r),
+          r.sensitivities};
+}
+
+PointFigures solve_point_figures(PreparedScene& prepared, const OperatingCondition& condition,
+                                 const PointOptions& options) {
+  return figures_at(prepared, condition, options, StepErrors::kByShorterSteps);
+}
+
+PointFigures screen_point(PreparedScene& prepared, const OperatingCondition& condition,
+                          const PointOptions& options) {
+  return figures_at(prepared, condition, options, StepErrors::kByReference);
+}
+
+}  // namespace tribodyn

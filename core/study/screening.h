@@ -1,0 +1,62 @@
+#pragma once
+
+#include <optional>
+
+#include "core/study/point_result.h"
+#include "core/study/prepared_scene.h"
+
+namespace tribodyn {
+
+/// Figures of the loaded flanks over the steady state.
+struct ContactSummary {
+  double film_ratio_minimum;              ///< lambda_s [-]
+  double film_ratio_mean;                 ///< weighted with load and time [-]
+  double contact_temperature_maximum;     ///< T_c [K]
+  double contact_temperature_mean;        ///< weighted with load and time [K]
+  double viscous_loss_power;              ///< mean [W]
+  double boundary_loss_power;             ///< mean [W]
+  double friction_coefficient_mean;       ///< as PointResult::friction_coefficient [-]
+  double pressure_maximum;                ///< p_max [Pa]
+  double flash_temperature_rise_maximum;  ///< (dT_f)_av [K]
+};
+
+/// The figures of a point to which PointOptions::tolerance applies, and others on request.
+struct PointFigures {
+  double pinion_torque = 0;                        ///< T_s [N m]
+  double wheel_torque = 0;                         ///< T_w [N m]
+  std::optional<double> inefficiency_rms;          ///< as in PointResult [%]
+  std::optional<double> inefficiency_energy_mean;  ///< [%]
+  double mesh_loss_power = 0;                      ///< mean [W]
+  double dte_minimum = 0, dte_maximum = 0;         ///< x [m]
+  bool contact_loss = false;
+  bool settled = false;
+  int period_in_mesh_cycles = 0;                   ///< 0: none found
+  std::optional<double> estimated_relative_error;  ///< absent: not estimated
+  long contact_solutions = 0;
+  PointModel model = PointModel::kFull;  ///< used
+  /// By PointOptions::contact_summary. Absent where no flank carries a load.
+  std::optional<ContactSummary> contact;
+  /// By PointOptions::sensitivities, on the grid of the figures.
+  std::optional<PointSensitivities> sensitivities;
+};
+
+/// The main figures of a result, with its contact summary and sensitivities.
+PointFigures main_figures(const PointResult& result);
+
+/// The figures of solve_prepared_point() from PointOptions::start, to within the tolerance, but
+/// faster. Computes no histories and no coexisting responses; ignores a carried state. Throws as
+/// solve_prepared_point does.
+PointFigures solve_point_figures(PreparedScene& prepared, const OperatingCondition& condition,
+                                 const PointOptions& options);
+
+/// The same for one of many lubricants on one prepared gear set, all at the same few speeds and
+/// loads. The orbit under Coulomb's friction is solved for once for all of them (ReferenceOrbits);
+/// each lubricant starts from it and is solved for on one grid, whose error that orbit gives. A
+/// result is the same bits whichever lubricants came before. Points after the first at a speed and
+/// load take half the time where twelve steps a mesh cycle are enough, and little less than alone
+/// where many are needed; the first takes up to twice. Some hundred speeds and loads are kept; more
+/// in turn gain nothing.
+PointFigures screen_point(PreparedScene& prepared, const OperatingCondition& condition,
+                          const PointOptions& options);
+
+}  // namespace tribodyn
