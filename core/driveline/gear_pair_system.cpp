@@ -16,7 +16,7 @@ GearPairSystem::GearPairSystem(const MeshData& mesh, const FlankContactModel& co
       options_(options),
       inverse_{1 / dynamics.pinion_shaft_inertia, 1 / dynamics.pinion_inertia,
                1 / dynamics.gear_inertia, 1 / dynamics.wheel_inertia},
-      lag_per_winding_(mesh.gear_teeth() / mesh.mean_gear_contact_radius()),
+      lag_per_approach_(mesh.gear_teeth() / mesh.mean_gear_contact_radius()),
       cycle_angle_(2 * std::numbers::pi / mesh.pinion_teeth()) {}
 
 MeshPhase GearPairSystem::at_phase(double phase) const {
@@ -223,17 +223,18 @@ void GearPairSystem::to_march(const SectionState& section, double* y) const {
   y[kPinionSpeed] = section.pinion_speed;
   y[kGearSpeed] = section.gear_speed;
   y[kWheelSpeed] = section.wheel_speed;
-  // b + winding + radius_integral(0, winding) = deflection: a contraction by R_g's ripple, 1e-2.
+  // b + mesh approach + radius_integral(0, mesh approach) = deflection: a contraction by R_g's
+  // ripple, 1e-2.
   const double lag = mesh_.gear_teeth() / mesh_.mean_gear_contact_radius();
-  double winding = section.mesh_deflection - dynamics_.half_backlash;
+  double approach = section.mesh_deflection - dynamics_.half_backlash;
   for (int i = 0; i < 60; ++i) {
     const double next = section.mesh_deflection - dynamics_.half_backlash -
-                        mesh_.functions(0, -lag * winding).radius_integral;
-    const bool done = std::abs(next - winding) <= 1e-20 + 1e-16 * std::abs(winding);
-    winding = next;
+                        mesh_.functions(0, -lag * approach).radius_integral;
+    const bool done = std::abs(next - approach) <= 1e-20 + 1e-16 * std::abs(approach);
+    approach = next;
     if (done) break;
   }
-  y[kWinding] = winding;
+  y[kMeshApproach] = approach;
   y[kLossWork] = y[kLossShareSquared] = 0;
 }
 
@@ -245,8 +246,8 @@ SectionState GearPairSystem::to_section(const double* y) const {
           y[kPinionSpeed],
           y[kGearSpeed],
           y[kWheelSpeed],
-          dynamics_.half_backlash + y[kWinding] +
-              mesh_.functions(0, -lag * y[kWinding]).radius_integral};
+          dynamics_.half_backlash + y[kMeshApproach] +
+              mesh_.functions(0, -lag * y[kMeshApproach]).radius_integral};
 }
 
 double GearPairSystem::stored_energy(double phase, const double* y) const {

@@ -14,11 +14,11 @@ namespace tribodyn {
 
 /// State of the march over mesh phase. The pinion angle is the independent variable, so that the
 /// samples of the tooth contact tables and the mesh cycle fall on known places; time is a
-/// component. Twists and the winding are differences of angles and stay small.
+/// component. Twists and the mesh approach are differences of angles and stay small.
 enum MarchComponent {
   kTime,              ///< [s] since the section
   kPinionShaftTwist,  ///< phi_s - phi_p [rad]
-  kWinding,           ///< R_p0 phi_p - R_g0 phi_g [m]
+  kMeshApproach,      ///< R_p0 phi_p - R_g0 phi_g [m]
   kGearShaftTwist,    ///< phi_g - phi_w [rad]
   kPinionShaftSpeed,  ///< [rad/s]
   kPinionSpeed,
@@ -120,16 +120,17 @@ struct Instant : Mechanics {
   std::array<ContactFigures, kFlankPairs> contact{};
 };
 
-/// Eqs 1-11 with friction (eqs 28, 29) in the loop. One instance per march: it carries the regime.
-/// Evaluation allocates nothing and throws nothing; a contact that is refused is remembered.
+/// The 4-DoF system of eqs 1 to 6 on the mesh functions of eqs 8 to 11, with friction (eqs 28, 29)
+/// in the loop. One instance per march: it carries the regime. Evaluation allocates nothing and
+/// throws nothing; the first refusal of a contact is kept.
 class GearPairSystem {
  public:
   /// Keeps references: mesh, contact and dynamics must outlive it.
   GearPairSystem(const MeshData& mesh, const FlankContactModel& contact,
                  const DrivelineDynamics& dynamics, const ModelOptions& options);
 
-  /// The contacts of an instant are solved together from now on; null: one by one, by the
-  /// reference. Figures that no record holds are left out. Keeps the reference.
+  /// From now on the contacts of an instant are solved together, or one by one by the reference if
+  /// `contacts` is null. Together, outputs that no record holds are left out. Keeps the reference.
   void solve_together(const FlankContactBatch* contacts);
 
   void set_torques(const Torques& torques) { torques_ = torques; }
@@ -147,11 +148,12 @@ class GearPairSystem {
 
   /// Regime that a state is in by its x and xdot.
   ContactRegime regime_of(double phase, const double* state) const;
-  /// Positive once it has happened: flanks part, or meet on the drive side; the load ends or
-  /// begins, or flanks meet on the coast side. Over a length and a force.
+  /// Event functions, positive once their event has happened. 0: flanks part, or meet on the drive
+  /// side; over `length`. 1: the load ends or begins, over `force`; or flanks meet on the coast
+  /// side, over `length`.
   std::array<double, 2> events(const MeshPhase& phase, const double* state, double length,
                                double force) const;
-  /// Into the regime after event 0 or 1. True where the load of touching flanks begins.
+  /// Changes the regime at event 0 or 1. Returns true if the load of touching flanks begins.
   bool change_regime(int event, const MeshPhase& phase, const double* state);
   /// x, mesh force and shaft torques, without friction.
   void mechanics(double phase, const double* state, Mechanics& out) const {
@@ -159,10 +161,10 @@ class GearPairSystem {
   }
   template <class Real>
   void mechanics(const MeshPhase& phase, const Real* state, MechanicsOf<Real>& out) const;
-  /// All of eqs 1-11 and the friction of each loaded flank at mesh phase [cycles]. Counts contacts.
+  /// Evaluates mechanics and the friction of each loaded flank at a mesh phase [cycles]. Counts the
+  /// contacts.
   void evaluate(double phase, const double* state, Instant& out);
-  /// Loaded flanks of eqs 2 and 3: what the contact of flank pair k sees under `load` [N] of its
-  /// own in a state, and its sliding and arms.
+  /// The conditions of a flank's contact under `load` [N] in a state; sets its sliding and arms.
   ContactConditions contact_conditions(const FlankKinematics& flank, double load,
                                        const double* state, FlankMotion& motion) const;
   /// d state / d phase of time and the seven states of motion.
@@ -173,7 +175,8 @@ class GearPairSystem {
   template <class Real>
   void motion(const Real* state, const MechanicsOf<Real>& at, const TorquesOf<Real>& torques,
               Real* derivative) const;
-  /// d state / d phase of the first kMarchComponents from an instant, and of the record if asked.
+  /// d state / d phase of the first kMarchComponents at an instant; with `record` also of the
+  /// integrals of RecordComponent.
   void derivative(const double* state, const Instant& at, bool record, double* derivative) const;
   /// x and mesh force without friction: for events.
   void kinematics(double phase, const double* state, Mechanics& out) const {
@@ -181,9 +184,9 @@ class GearPairSystem {
   }
   template <class Real>
   void kinematics(const MeshPhase& phase, const Real* state, MechanicsOf<Real>& out) const;
-  /// dR_g/d winding [-].
-  double gear_radius_by_winding(const MeshPhase& phase, double winding) const {
-    return lag_per_winding_ * mesh_.gear_radius_by_lag(phase, lag_per_winding_ * winding);
+  /// dR_g/d(mesh approach) [-].
+  double gear_radius_by_approach(const MeshPhase& phase, double approach) const {
+    return lag_per_approach_ * mesh_.gear_radius_by_lag(phase, lag_per_approach_ * approach);
   }
   /// Mesh phase [cycles].
   MeshPhase at_phase(double phase) const;
@@ -199,12 +202,12 @@ class GearPairSystem {
   const FlankContactModel& contact_model() const { return contact_; }
   const ModelOptions& options() const { return options_; }
   long contact_solutions() const { return contact_solutions_; }
-  /// Contacts of this system that were solved elsewhere, and the refusal of one.
+  /// Counts contacts of this system that were solved elsewhere.
   void count_contacts(long solved) { contact_solutions_ += solved; }
   void refuse(ContactStatus status) {
     if (refusal_ == ContactStatus::kOk) refusal_ = status;
   }
-  /// kOk, or the first refusal met since it was taken.
+  /// The first refusal since the last take_refusal(); kOk if there is none.
   ContactStatus refusal() const { return refusal_; }
   ContactStatus take_refusal() { return std::exchange(refusal_, ContactStatus::kOk); }
 
@@ -221,7 +224,7 @@ class GearPairSystem {
   struct Inverse {
     double pinion_shaft_inertia, pinion_inertia, gear_inertia, wheel_inertia;
   } inverse_;
-  double lag_per_winding_;  // of N_g phi_g behind N_p phi_p [rad/m]
+  double lag_per_approach_;  // of N_g phi_g behind N_p phi_p [rad/m]
   double cycle_angle_;
   int interval_ = 0;
   long contact_solutions_ = 0;
@@ -231,12 +234,12 @@ class GearPairSystem {
 template <class Real>
 void GearPairSystem::kinematics(const MeshPhase& phase, const Real* y,
                                 MechanicsOf<Real>& out) const {
-  // N_g phi_g = N_p phi_p - N_g winding/R_g0, because R_g0 N_p = R_p0 N_g.
-  out.mesh = mesh_.functions(phase, lag_per_winding_ * y[kWinding]);
+  // N_g phi_g = N_p phi_p - N_g (mesh approach)/R_g0, because R_g0 N_p = R_p0 N_g.
+  out.mesh = mesh_.functions(phase, lag_per_approach_ * y[kMeshApproach]);
   const MeshFunctionsOf<Real>& m = out.mesh;
   const double b = dynamics_.half_backlash;
   out.transmission_error =
-      b + y[kWinding] + m.radius_integral - m.static_transmission_error;  // (eq 6)
+      b + y[kMeshApproach] + m.radius_integral - m.static_transmission_error;  // (eq 6)
   out.transmission_velocity =
       (m.pinion_contact_radius - m.static_transmission_error_slope) * y[kPinionSpeed] -
       m.gear_contact_radius * y[kGearSpeed];
@@ -294,8 +297,8 @@ void GearPairSystem::motion(const Real* y, const MechanicsOf<Real>& at,
   const Real time = cycle_angle_ / y[kPinionSpeed];
   dy[kTime] = time;
   dy[kPinionShaftTwist] = time * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
-  dy[kWinding] = time * (mesh_.mean_pinion_contact_radius() * y[kPinionSpeed] -
-                         mesh_.mean_gear_contact_radius() * y[kGearSpeed]);
+  dy[kMeshApproach] = time * (mesh_.mean_pinion_contact_radius() * y[kPinionSpeed] -
+                              mesh_.mean_gear_contact_radius() * y[kGearSpeed]);
   dy[kGearShaftTwist] = time * (y[kGearSpeed] - y[kWheelSpeed]);
   const Real pinion_shaft_torque = torques.pinion - at.pinion_shaft_torque;
   const Real wheel_torque = at.gear_shaft_torque - torques.wheel;

@@ -3,7 +3,7 @@
 namespace tribodyn {
 
 /// State of the 4-DoF system at mesh phase 0 (phi_p a whole number of pitches). The system does not
-/// depend on absolute angles, so seven numbers say all. SI units.
+/// depend on absolute angles, so seven numbers are enough. SI units.
 struct SectionState {
   double pinion_shaft_twist = 0;  ///< phi_s - phi_p [rad]
   double gear_shaft_twist = 0;    ///< phi_g - phi_w [rad]

@@ -28,7 +28,7 @@ double MarchScales::of(const MeshData& mesh, int component) const {
       return time;
     case kPinionShaftTwist:
       return length / r_p;
-    case kWinding:
+    case kMeshApproach:
       return length;
     case kGearShaftTwist:
       return length / r_g;

@@ -11,7 +11,7 @@
 
 namespace tribodyn {
 
-/// Sizes of the components of the march: what an error of one is measured against.
+/// Scales of the components of the march, for error tests and Newton's method.
 struct MarchScales {
   double length;        ///< static mesh deflection [m]
   double speed;         ///< pinion speed of a free vibration that large [rad/s]
@@ -118,7 +118,7 @@ class PhaseSystem {
   std::vector<GapEvent>* gap_events = nullptr;
 
  private:
-  /// True if the load begins here, from zero.
+  /// Returns true if the load begins here, from zero.
   bool change_regime(int index, double at_phase, const State& y) {
     const int before = system_.regime.side;
     const bool load_begins = system_.change_regime(index, system_.at_phase(at_phase), y.data());

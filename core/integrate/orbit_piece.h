@@ -23,14 +23,14 @@ inline const MarchState& state_of(const OrbitPiece& piece, int part) {
   return part == 0 ? piece.start : part == 1 ? piece.middle : piece.end;
 }
 
-/// The flank pairs at part 0, 1, 2 of a piece: its start, middle, end. `grid`: what the piece's
-/// node is of; `off_grid` holds them where the piece has none.
+/// The flank pairs at part 0, 1, 2 of a piece: its start, middle, end. `grid`: that of the piece's
+/// node; `off_grid` holds the flank pairs of a piece without node.
 const std::array<FlankKinematics, kFlankPairs>& flanks_of(
     const MeshData& mesh, const MeshGrid& grid, const OrbitPiece& piece, int part,
     std::array<FlankKinematics, kFlankPairs>& off_grid);
 
-/// Fills in the first instant of each of the pieces: where SolvedPieces has it, and the contacts of
-/// SolvedContacts in the same order. Returns the number of instants.
+/// Sets the number of the first instant of each piece, in the order of SolvedPieces and of
+/// SolvedContacts. Returns the number of instants.
 int number_instants(const std::vector<OrbitPiece>& pieces, std::vector<int>& first);
 
 }  // namespace tribodyn

@@ -43,7 +43,7 @@ HWY_INLINE void transpose_rates(const SensitivityConstants& c, const StageSlopes
   const R wheel = (at.time * c.per_wheel_inertia) * rate[kWheelSpeed];
   const R pinion_twisting = at.time * rate[kPinionShaftTwist];
   const R gear_twisting = at.time * rate[kGearShaftTwist];
-  const R winding = at.time * rate[kWinding];
+  const R approach = at.time * rate[kMeshApproach];
   R slower = at.rate[0] * rate[0];
   R slower_2 = at.rate[4] * rate[4];
   for (int i = 1; i < 4; ++i) {
@@ -60,14 +60,15 @@ HWY_INLINE void transpose_rates(const SensitivityConstants& c, const StageSlopes
   out.state[kGearShaftTwist] = c.gear_shaft_stiffness * gear_shaft_torque;
   out.state[kPinionShaftSpeed] = pinion_slip;
   out.state[kWheelSpeed] = -1.0 * gear_slip;
-  out.state[kWinding] =
-      fused(at.force_by_winding, force,
-            fused(at.pinion_torque_by_winding, pinion, at.gear_torque_by_winding * gear));
-  out.state[kPinionSpeed] = fused(
-      at.damping * at.relative_radius, force,
-      fused(c.pinion_radius, winding, fused(-at.per_speed, slower + slower_2, -1.0 * pinion_slip)));
+  out.state[kMeshApproach] =
+      fused(at.force_by_approach, force,
+            fused(at.pinion_torque_by_approach, pinion, at.gear_torque_by_approach * gear));
+  out.state[kPinionSpeed] =
+      fused(at.damping * at.relative_radius, force,
+            fused(c.pinion_radius, approach,
+                  fused(-at.per_speed, slower + slower_2, -1.0 * pinion_slip)));
   out.state[kGearSpeed] =
-      fused(-at.damping * at.gear_radius, force, fused(-c.gear_radius, winding, gear_slip));
+      fused(-at.damping * at.gear_radius, force, fused(-c.gear_radius, approach, gear_slip));
   out.pinion_arm = at.load * pinion;
   out.gear_arm = at.load * gear;
   out.pinion_torque = pinion_shaft;
@@ -79,7 +80,7 @@ template <int kSize>
 HWY_INLINE void rates_of(const SensitivityConstants& c, const StageSlopes& at, const Row<kSize>* s,
                          const Row<kSize>& pinion_arm, const Row<kSize>& gear_arm, Row<kSize>* ds) {
   using R = Row<kSize>;
-  const R force = fused(at.force_by_winding, s[kWinding],
+  const R force = fused(at.force_by_approach, s[kMeshApproach],
                         fused(at.damping * at.relative_radius, s[kPinionSpeed],
                               (-at.damping * at.gear_radius) * s[kGearSpeed]));
   const R pinion_twisting = s[kPinionShaftSpeed] - s[kPinionSpeed];
@@ -88,15 +89,17 @@ HWY_INLINE void rates_of(const SensitivityConstants& c, const StageSlopes& at, c
                                c.pinion_shaft_damping * pinion_twisting);
   const R gear_shaft =
       fused(c.gear_shaft_stiffness, s[kGearShaftTwist], c.gear_shaft_damping * gear_twisting);
-  const R pinion = fused(
-      at.load, pinion_arm,
-      fused(at.pinion_arm, force, fused(at.pinion_torque_by_winding, s[kWinding], pinion_shaft)));
-  const R gear = fused(
-      at.load, gear_arm,
-      fused(at.gear_arm, force, fused(at.gear_torque_by_winding, s[kWinding], -1.0 * gear_shaft)));
+  const R pinion =
+      fused(at.load, pinion_arm,
+            fused(at.pinion_arm, force,
+                  fused(at.pinion_torque_by_approach, s[kMeshApproach], pinion_shaft)));
+  const R gear =
+      fused(at.load, gear_arm,
+            fused(at.gear_arm, force,
+                  fused(at.gear_torque_by_approach, s[kMeshApproach], -1.0 * gear_shaft)));
   ds[kTime] = R(0);
   ds[kPinionShaftTwist] = pinion_twisting;
-  ds[kWinding] = fused(c.pinion_radius, s[kPinionSpeed], -c.gear_radius * s[kGearSpeed]);
+  ds[kMeshApproach] = fused(c.pinion_radius, s[kPinionSpeed], -c.gear_radius * s[kGearSpeed]);
   ds[kGearShaftTwist] = gear_twisting;
   ds[kPinionShaftSpeed] = -c.per_pinion_shaft_inertia * pinion_shaft;
   ds[kPinionSpeed] = c.per_pinion_inertia * pinion;
@@ -129,7 +132,7 @@ template <int kSize>
 HWY_INLINE void add_arms(const std::array<ArmSlopes, 2>& arms, const StageSlopes& at,
                          const Row<kSize>& pinion, const Row<kSize>& gear, Row<kSize>* state) {
   const Row<kSize> force = fused(arms[0][0], pinion, arms[1][0] * gear);
-  state[kWinding] = fused(at.force_by_winding, force, state[kWinding]);
+  state[kMeshApproach] = fused(at.force_by_approach, force, state[kMeshApproach]);
   state[kPinionSpeed] = fused(
       arms[0][1], pinion,
       fused(arms[1][1], gear, fused(at.damping * at.relative_radius, force, state[kPinionSpeed])));

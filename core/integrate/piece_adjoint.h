@@ -19,17 +19,17 @@ using AdjointRow = std::array<double, kAdjointLanes>;
 /// Derivatives of the figures by time and the seven states, in the order of MarchComponent.
 using StateAdjoint = std::array<AdjointRow, 8>;
 
-/// What the rates at one instant depend on: as SensitivityStage, with what the winding does to the
-/// contact radius of the gear. Exact.
+/// What the rates at one instant depend on: as SensitivityStage, with what the mesh approach does
+/// to the contact radius of the gear. Exact.
 struct StageSlopes {
   double relative_radius, gear_radius;  ///< R_p - e', R_g [m]
-  double force_by_winding;              ///< of the mesh force [N/m]
+  double force_by_approach;             ///< of the mesh force [N/m]
   double damping;                       ///< of the mesh force [N s/m]
   double pinion_arm, gear_arm;          ///< what a mesh force turns, friction included [m]
-  double pinion_torque_by_winding, gear_torque_by_winding;  ///< besides the mesh force's [N]
-  double load;                                              ///< what friction arms act on [N]
-  double time, per_speed;                                   ///< of a mesh cycle [s]; 1/speed
-  std::array<double, 8> rate;                               ///< of time and states by phase
+  double pinion_torque_by_approach, gear_torque_by_approach;  ///< besides the mesh force's [N]
+  double load;                                                ///< what friction arms act on [N]
+  double time, per_speed;                                     ///< of a mesh cycle [s]; 1/speed
+  std::array<double, 8> rate;                                 ///< of time and states by phase
 };
 
 /// Derivatives of a friction arm (torque over load) by mesh force, speeds of pinion and gear.

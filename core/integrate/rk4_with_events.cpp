@@ -65,10 +65,10 @@ SensitivityStage Rk4WithEvents::sensitivity_stage(const MarchState& y, const Mec
                     : system_.dynamics().mesh_damping;
   out.pinion_arm = load_by_force * friction.pinion - m.pinion_contact_radius;
   out.gear_arm = load_by_force * friction.gear + m.gear_contact_radius;
-  out.torque_per_winding = 0;
+  out.torque_per_approach = 0;
   if (system_.options().energy_consistent) {
     out.pinion_arm += m.static_transmission_error_slope;
-    if (r.side != 0) out.torque_per_winding = -m.mesh_stiffness_slope * at.deflection;
+    if (r.side != 0) out.torque_per_approach = -m.mesh_stiffness_slope * at.deflection;
   }
   out.time = rate[kTime];
   out.per_speed = 1 / y[kPinionSpeed];
@@ -97,14 +97,14 @@ void Rk4WithEvents::change_regime(int event, const FrictionArms& friction, const
   Mechanics at;
   const Rates before = rates(friction, phase, y, at);
   system_.change_regime(event, phase, y.data());
-  const double approach = at.transmission_velocity * before[kTime];  // dx/dphase
-  if (system_.regime.side == side || approach == 0) return;
+  const double error_slope = at.transmission_velocity * before[kTime];  // dx/dphase
+  if (system_.regime.side == side || error_slope == 0) return;
   const Rates after = rates(friction, phase, y, at);
   evaluations_ += 2;
-  // dx/dwinding = R_g/R_g0 (eq 6); x depends on no other state.
-  const double per_winding =
-      at.mesh.gear_contact_radius / (system_.mesh().mean_gear_contact_radius() * approach);
-  const Sensitivity::value_type later = -per_winding * (*s)[kWinding];  // the event's phase
+  // dx/d(mesh approach) = R_g/R_g0 (eq 6); x depends on no other state.
+  const double per_approach =
+      at.mesh.gear_contact_radius / (system_.mesh().mean_gear_contact_radius() * error_slope);
+  const Sensitivity::value_type later = -per_approach * (*s)[kMeshApproach];  // the event's phase
   for (int i = 0; i < kStates; ++i) (*s)[i] -= (after[i] - before[i]) * later;
 }
 
@@ -122,7 +122,7 @@ void Rk4WithEvents::step(FrozenFriction& friction, const Span& span, const March
     Mechanics at;
     rate = rates(here, *phases[i], stage, at);
     for (int j = 0; j < kStates; ++j) to[j] += kWeight[i] * h * rate[j];
-    if (keep_stages_) stages_[i] = sensitivity_stage(stage, at, here, rate);
+    if (store_stages_) stages_[i] = sensitivity_stage(stage, at, here, rate);
     if (i == 0) first_rate_ = rate;
   }
   last_rate_ = rate;
@@ -240,7 +240,7 @@ bool Rk4WithEvents::run(FrozenFriction& friction, bool bilateral_contact, MarchS
     pieces->reserve(static_cast<std::size_t>(grid_.steps()) * static_cast<std::size_t>(period_));
   }
   y[kTime] = y[kLossWork] = y[kLossShareSquared] = 0;
-  keep_stages_ = s != nullptr;
+  store_stages_ = s != nullptr;
   if (s != nullptr) {
     for (auto& row : *s) row.setZero();
     for (int i = 0; i < kTorqueColumn; ++i) (*s)[i + 1](i) = 1;

@@ -77,7 +77,7 @@ class Rk4WithEvents {
   long evaluations_ = 0, taken_ = 0, events_ = 0;
   // Of the last step.
   Rates first_rate_{}, last_rate_{};
-  bool keep_stages_ = false;
+  bool store_stages_ = false;
   std::array<SensitivityStage, 4> stages_;
 };
 

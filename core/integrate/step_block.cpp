@@ -41,7 +41,7 @@ struct Constants {
         wheel_torque(block.system.torques().wheel),
         pinion_radius(block.system.mesh().mean_pinion_contact_radius()),
         gear_radius(block.system.mesh().mean_gear_contact_radius()),
-        lag_per_winding(block.system.mesh().gear_teeth() / gear_radius),
+        lag_per_approach(block.system.mesh().gear_teeth() / gear_radius),
         backlash((1 - block.side) * block.system.dynamics().half_backlash),
         cycle_angle(block.system.cycle_angle()),
         reach(block.grid.series_reach()),
@@ -52,7 +52,7 @@ struct Constants {
   double pinion_shaft_inertia, pinion_inertia, gear_inertia, wheel_inertia;  // inverse
   double pinion_shaft_stiffness, pinion_shaft_damping, gear_shaft_stiffness, gear_shaft_damping;
   double mesh_damping, pinion_torque, wheel_torque, pinion_radius, gear_radius;
-  double lag_per_winding;
+  double lag_per_approach;
   double backlash;  // from x to the deflection of the touching flanks
   double cycle_angle, reach, side;
   bool energy_consistent, solve_wheel_torque;
@@ -85,7 +85,7 @@ HWY_INLINE Pack series(const Phase& phase, int function, Pack x, Pack x2, Pack x
 /// Of x and the mesh force. Clears `good` where the series do not reach.
 HWY_INLINE void mechanics(const Constants& c, const Phase& phase, const Pack* y, PackMechanics& m,
                           Mask& good) {
-  const Pack x = less_product(c.lag_per_winding, y[kWinding], phase[kOffsetRow]);
+  const Pack x = less_product(c.lag_per_approach, y[kMeshApproach], phase[kOffsetRow]);
   good = good & (size(x) <= c.reach);
   const Pack x2 = x * x, x4 = x2 * x2;
   m.pinion_radius = phase[kPinionRadiusRow];
@@ -93,7 +93,7 @@ HWY_INLINE void mechanics(const Constants& c, const Phase& phase, const Pack* y,
   m.relative_radius = m.pinion_radius - phase[kErrorSlopeRow];
   m.stiffness = phase[kStiffnessRow];
   // x - b
-  const Pack beyond = y[kWinding] + series(phase, 1, x, x2, x4) - phase[kErrorRow];
+  const Pack beyond = y[kMeshApproach] + series(phase, 1, x, x2, x4) - phase[kErrorRow];
   m.deflection = beyond + c.backlash;
   m.transmission_error = beyond;
   m.velocity = less_product(m.gear_radius, y[kGearSpeed], m.relative_radius * y[kPinionSpeed]);
@@ -119,7 +119,7 @@ HWY_INLINE void rates(const Constants& c, const Phase& phase, const PackMechanic
       fused(phase.torque(kGearFrictionRow), pressing, fused(m.gear_radius, m.force, -gear_shaft));
   const Pack time = c.cycle_angle / y[kPinionSpeed];
   dy[kTime] = time;
-  dy[kWinding] =
+  dy[kMeshApproach] =
       time * less_product(c.gear_radius, y[kGearSpeed], c.pinion_radius * y[kPinionSpeed]);
   dy[kPinionSpeed] = time * (pinion * c.pinion_inertia);
   dy[kGearSpeed] = time * (gear * c.gear_inertia);
@@ -137,8 +137,8 @@ struct Stage {
   Pack rate[kStates];
 };
 
-HWY_INLINE void keep_stage(const Constants& c, const Phase& phase, const PackMechanics& m,
-                           const Pack* y, const Pack* dy, Stage& out) {
+HWY_INLINE void store_stage(const Constants& c, const Phase& phase, const PackMechanics& m,
+                            const Pack* y, const Pack* dy, Stage& out) {
   const Pack by_force = where(c.side * m.force > 0, c.side);
   out.relative_radius = m.relative_radius;
   out.gear_radius = m.gear_radius;
@@ -155,12 +155,12 @@ HWY_INLINE void keep_stage(const Constants& c, const Phase& phase, const PackMec
   for (int i = 0; i < kStates; ++i) out.rate[i] = dy[i];
 }
 
-/// As FixedStepMarch::sensitivity_rates, of one column.
+/// The rates of the variational equations, of one column.
 HWY_INLINE void derivative_rates(const Constants& c, const Stage& at, int column, const Pack* s,
                                  Pack* ds) {
   const Pack velocity =
       less_product(at.gear_radius, s[kGearSpeed], at.relative_radius * s[kPinionSpeed]);
-  const Pack force = fused(at.stiffness, s[kWinding], c.mesh_damping * velocity);
+  const Pack force = fused(at.stiffness, s[kMeshApproach], c.mesh_damping * velocity);
   const Pack pinion_shaft =
       fused(c.pinion_shaft_stiffness, s[kPinionShaftTwist],
             c.pinion_shaft_damping * (s[kPinionShaftSpeed] - s[kPinionSpeed]));
@@ -168,11 +168,11 @@ HWY_INLINE void derivative_rates(const Constants& c, const Stage& at, int column
                                 c.gear_shaft_damping * (s[kGearSpeed] - s[kWheelSpeed]));
   Pack pinion = fused(at.pinion_arm, force, pinion_shaft);
   if (c.energy_consistent) {
-    pinion = less_product(at.stiffness_slope * at.deflection, s[kWinding], pinion);
+    pinion = less_product(at.stiffness_slope * at.deflection, s[kMeshApproach], pinion);
   }
   const Pack gear = fused(at.gear_arm, force, -gear_shaft);
   ds[kTime] = 0;
-  ds[kWinding] = less_product(c.gear_radius, s[kGearSpeed], c.pinion_radius * s[kPinionSpeed]);
+  ds[kMeshApproach] = less_product(c.gear_radius, s[kGearSpeed], c.pinion_radius * s[kPinionSpeed]);
   ds[kPinionSpeed] = c.pinion_inertia * pinion;
   ds[kGearSpeed] = c.gear_inertia * gear;
   ds[kPinionShaftTwist] = s[kPinionShaftSpeed] - s[kPinionSpeed];
@@ -259,7 +259,7 @@ bool steps_in_lanes(const StepBlock& block, const CycleResponse& response, Colum
       PackMechanics m;
       mechanics(c, *phases[n], stage, m, good);
       rates(c, *phases[n], m, stage, rate);
-      if (derivatives != nullptr) keep_stage(c, *phases[n], m, stage, rate, stages[n]);
+      if (derivatives != nullptr) store_stage(c, *phases[n], m, stage, rate, stages[n]);
       for (int i = 0; i < kStates; ++i) sum[i] = fused(kWeight[n] * h, rate[i], sum[i]);
     }
     for (int i = 0; i < kStates; ++i) {
@@ -338,8 +338,8 @@ void compose_matrices(const Columns& derivatives, CycleDerivatives& out) {
   }
 }
 
-void follow_in_rows(const CycleDerivatives& derivatives, const CycleResponse& response,
-                    const Columns& end, double* particular) {
+void condense_in_rows(const CycleDerivatives& derivatives, const CycleResponse& response,
+                      const Columns& end, double* particular) {
   constexpr int kSize = kStates;
   std::fill_n(particular, kSize, 0.0);
   double residual[kSize];
@@ -354,8 +354,8 @@ void follow_in_rows(const CycleDerivatives& derivatives, const CycleResponse& re
   }
 }
 
-double add_section_in_rows(const CycleDerivatives& derivatives, const double* section,
-                           const double* per_scale, double* particular) {
+double expand_in_rows(const CycleDerivatives& derivatives, const double* section,
+                      const double* per_scale, double* particular) {
   constexpr int kSize = kStates;
   const double nothing[kSize] = {};
   const auto scale = load_row<kSize>(per_scale);
@@ -374,49 +374,50 @@ double add_section_in_rows(const CycleDerivatives& derivatives, const double* se
   return *std::max_element(found, found + kSize);
 }
 
-void see_in_lanes(const StepBlock& block, const GridContacts& contacts,
-                  const CycleResponse& response, Columns& seen) {
+void gather_in_lanes(const StepBlock& block, const GridContacts& contacts,
+                     const CycleResponse& response, Columns& seen) {
   const int count = static_cast<int>(contacts.node.size());
   // What the contacts of a node share, where the contact is.
   for (int i = 0; i < count; ++i) {
     const int node = contacts.node[i];
     const Columns& at = node % 2 == 0 ? response.start : response.middle;
-    seen[kSeenLoad][i] = at[kMeshForceRow][node / 2];
-    seen[kSeenPinionX][i] = at[kPinionSpeed][node / 2];
-    seen[kSeenGearX][i] = at[kGearSpeed][node / 2];
+    seen[kGatheredLoad][i] = at[kMeshForceRow][node / 2];
+    seen[kGatheredPinionX][i] = at[kPinionSpeed][node / 2];
+    seen[kGatheredGearX][i] = at[kGearSpeed][node / 2];
   }
   const ModelOptions& options = block.system.options();
   const double side = block.side;
   for (int i = 0; i < count; i += pack_lanes()) {
     const auto flank = [&](int row) HWY_ATTR { return load_any(contacts.kinematics[row] + i); };
-    const auto put = [&](SeenRow row, Pack value) HWY_ATTR { store_any(value, seen[row] + i); };
-    const Pack pinion_speed = load_any(seen[kSeenPinionX] + i);
-    const Pack gear_speed = load_any(seen[kSeenGearX] + i);
+    const auto put = [&](GatheredRow row, Pack value) HWY_ATTR { store_any(value, seen[row] + i); };
+    const Pack pinion_speed = load_any(seen[kGatheredPinionX] + i);
+    const Pack gear_speed = load_any(seen[kGatheredGearX] + i);
     const Pack pinion_vx = flank(kPinionVelocityXRow), pinion_vy = flank(kPinionVelocityYRow);
     const Pack gear_vx = flank(kGearVelocityXRow), gear_vy = flank(kGearVelocityYRow);
     const Pack pinion_x = pinion_vx * pinion_speed, pinion_y = pinion_vy * pinion_speed;
     const Pack gear_x = gear_vx * gear_speed, gear_y = gear_vy * gear_speed;
     const Pack slide_x = pinion_x - gear_x, slide_y = pinion_y - gear_y;
     const Pack sliding = root(fused(slide_x, slide_x, square(slide_y)));
-    put(kSeenLoad, flank(kLoadShareRow) * greatest(side * load_any(seen[kSeenLoad] + i), 0));
-    put(kSeenSlidingSpeed, sliding);
+    put(kGatheredLoad,
+        flank(kLoadShareRow) * greatest(side * load_any(seen[kGatheredLoad] + i), 0));
+    put(kGatheredSlidingSpeed, sliding);
     if (options.tabulated_friction_arms) {
-      put(kSeenPinionArm, flank(kPinionArmRow));
-      put(kSeenGearArm, flank(kGearArmRow));
+      put(kGatheredPinionArm, flank(kPinionArmRow));
+      put(kGatheredGearArm, flank(kGearArmRow));
     } else {
       const Pack per_speed = where(sliding > 0, 1 / sliding);
-      put(kSeenPinionArm, -per_speed * fused(slide_x, pinion_vx, slide_y * pinion_vy));
-      put(kSeenGearArm, per_speed * fused(slide_x, gear_vx, slide_y * gear_vy));
+      put(kGatheredPinionArm, -per_speed * fused(slide_x, pinion_vx, slide_y * pinion_vy));
+      put(kGatheredGearArm, per_speed * fused(slide_x, gear_vx, slide_y * gear_vy));
     }
     Pack drift_x = 0, drift_y = 0;
     if (options.subtract_contact_point_motion) {
       drift_x = flank(kContactPointVelocityXRow) * pinion_speed;
       drift_y = flank(kContactPointVelocityYRow) * pinion_speed;
     }
-    put(kSeenPinionX, pinion_x - drift_x);
-    put(kSeenPinionY, pinion_y - drift_y);
-    put(kSeenGearX, gear_x - drift_x);
-    put(kSeenGearY, gear_y - drift_y);
+    put(kGatheredPinionX, pinion_x - drift_x);
+    put(kGatheredPinionY, pinion_y - drift_y);
+    put(kGatheredGearX, gear_x - drift_x);
+    put(kGatheredGearY, gear_y - drift_y);
   }
 }
 
@@ -426,35 +427,35 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace tribodyn {
-bool take_steps(InstructionSet instruction_set, const StepBlock& block,
-                const CycleResponse& response, Columns& end, Columns* derivatives) {
+bool rk4_steps(InstructionSet instruction_set, const StepBlock& block,
+               const CycleResponse& response, Columns& end, Columns* derivatives) {
   TRIBODYN_RETURN_WITH(instruction_set, steps_in_lanes, block, response, end, derivatives)
 }
 
-bool fill_response(InstructionSet instruction_set, const StepBlock& block,
-                   CycleResponse& response) {
+bool complete_midpoints(InstructionSet instruction_set, const StepBlock& block,
+                        CycleResponse& response) {
   TRIBODYN_RETURN_WITH(instruction_set, fill_lanes, block, response)
 }
 
-void compose_steps(InstructionSet instruction_set, const Columns& derivatives,
-                   CycleDerivatives& out) {
+void compose_derivatives(InstructionSet instruction_set, const Columns& derivatives,
+                         CycleDerivatives& out) {
   TRIBODYN_RETURN_WITH(instruction_set, compose_matrices, derivatives, out)
 }
 
-void follow_residuals(InstructionSet instruction_set, const CycleDerivatives& derivatives,
-                      const CycleResponse& response, const Columns& end, double* particular) {
-  TRIBODYN_RETURN_WITH(instruction_set, follow_in_rows, derivatives, response, end, particular)
+void condense_residuals(InstructionSet instruction_set, const CycleDerivatives& derivatives,
+                        const CycleResponse& response, const Columns& end, double* particular) {
+  TRIBODYN_RETURN_WITH(instruction_set, condense_in_rows, derivatives, response, end, particular)
 }
 
-double add_section_change(InstructionSet instruction_set, const CycleDerivatives& derivatives,
-                          const double* section, const double* per_scale, double* particular) {
-  TRIBODYN_RETURN_WITH(instruction_set, add_section_in_rows, derivatives, section, per_scale,
-                       particular)
+double expand_section_update(InstructionSet instruction_set, const CycleDerivatives& derivatives,
+                             const double* section, const double* per_scale, double* particular) {
+  TRIBODYN_RETURN_WITH(instruction_set, expand_in_rows, derivatives, section, per_scale, particular)
 }
 
-void see_contacts(InstructionSet instruction_set, const StepBlock& block,
-                  const GridContacts& contacts, const CycleResponse& response, Columns& seen) {
-  TRIBODYN_RETURN_WITH(instruction_set, see_in_lanes, block, contacts, response, seen)
+void gather_contact_conditions(InstructionSet instruction_set, const StepBlock& block,
+                               const GridContacts& contacts, const CycleResponse& response,
+                               Columns& seen) {
+  TRIBODYN_RETURN_WITH(instruction_set, gather_in_lanes, block, contacts, response, seen)
 }
 
 }  // namespace tribodyn

@@ -42,22 +42,25 @@ struct StepBlock {
 /// Unknowns of a step: the states but time, then the torque.
 inline constexpr int kStepUnknowns = 8;
 
-/// One classical Runge-Kutta step from every start of `response` (time is not read): states
-/// at their ends, kTime their durations, to `end`. Unless null, to `derivatives` those of duration
-/// and states at a step's end (rows) by states at its start and the torque (columns), row after
-/// row. False where the grid's series do not reach that far or a number means nothing.
-bool take_steps(InstructionSet instruction_set, const StepBlock& block,
-                const CycleResponse& response, Columns& end, Columns* derivatives);
+/// Takes one classical Runge-Kutta step from every start of `response`; time is not read. Writes to
+/// `end` the states at the ends of the steps and, in row kTime, the durations. Unless `derivatives`
+/// is null, writes to it, lane by lane, the 8 x 8 Jacobian of each step row after row: duration and
+/// states at the end by states at the start and the unknown torque. Returns false beyond the reach
+/// of the grid's series, or if a number is not finite.
+bool rk4_steps(InstructionSet instruction_set, const StepBlock& block,
+               const CycleResponse& response, Columns& end, Columns* derivatives);
 
-/// Fills rates and mechanics of the starts, the middles (by the cubic through both
-/// ends) and their mechanics. Times and states at the starts are given. False as above.
-bool fill_response(InstructionSet instruction_set, const StepBlock& block, CycleResponse& response);
+/// Computes rates and mechanics of the starts, the states at the middles (by the cubic through both
+/// ends) and their mechanics. Requires times and states at the starts. Returns false as
+/// rk4_steps().
+bool complete_midpoints(InstructionSet instruction_set, const StepBlock& block,
+                        CycleResponse& response);
 
-/// How the states at the steps' starts, and the steps' durations, follow the section state and the
-/// unknown torque. Square matrices in columns: states and the duration of the step before, by
-/// states and the torque.
+/// Derivatives of the states at the starts of the steps, and of the durations of the steps, by the
+/// section state and the unknown torque. 8 x 8 matrices in columns: states and the duration of the
+/// step before, by states and the torque.
 struct CycleDerivatives {
-  /// Numbers of one.
+  /// Elements of one matrix.
   static constexpr std::size_t kMatrix = std::size_t{kStepUnknowns} * kStepUnknowns;
 
   explicit CycleDerivatives(int count)
@@ -70,35 +73,38 @@ struct CycleDerivatives {
       from_section;  ///< of each start and the end of the cycle, by the section
 };
 
-/// From the derivatives of take_steps().
-void compose_steps(InstructionSet instruction_set, const Columns& derivatives,
-                   CycleDerivatives& out);
+/// Multiplies the Jacobians of rk4_steps() along the cycle.
+void compose_derivatives(InstructionSet instruction_set, const Columns& derivatives,
+                         CycleDerivatives& out);
 
-/// What the steps' residuals (their ends less the next starts) alone do to the starts and
-/// durations: kStepUnknowns numbers for each start and the end of the cycle.
-void follow_residuals(InstructionSet instruction_set, const CycleDerivatives& derivatives,
-                      const CycleResponse& response, const Columns& end, double* particular);
+/// Forward elimination of condensed multiple shooting: propagates the residuals of the steps (their
+/// ends less the next starts) from a section that does not move. kStepUnknowns numbers for each
+/// start and the end of the cycle.
+void condense_residuals(InstructionSet instruction_set, const CycleDerivatives& derivatives,
+                        const CycleResponse& response, const Columns& end, double* particular);
 
-/// Adds to each of `particular` what a change of the section's unknowns does. Returns the largest
-/// change of a state, each over its scale (the last number 0: not the duration).
-double add_section_change(InstructionSet instruction_set, const CycleDerivatives& derivatives,
-                          const double* section, const double* per_scale, double* particular);
+/// Back substitution: adds to each of `particular` the effect of a change of the section's
+/// unknowns. Returns the largest change of a state, each over its scale (the last number 0: not the
+/// duration).
+double expand_section_update(InstructionSet instruction_set, const CycleDerivatives& derivatives,
+                             const double* section, const double* per_scale, double* particular);
 
-/// Rows of what contacts see in a response.
-enum SeenRow {
-  kSeenLoad,
-  kSeenPinionX,
-  kSeenPinionY,
-  kSeenGearX,
-  kSeenGearY,
-  kSeenSlidingSpeed,
-  kSeenPinionArm,
-  kSeenGearArm,
-  kSeenRows
+/// Rows of the conditions of the contacts of a response.
+enum GatheredRow {
+  kGatheredLoad,
+  kGatheredPinionX,
+  kGatheredPinionY,
+  kGatheredGearX,
+  kGatheredGearY,
+  kGatheredSlidingSpeed,
+  kGatheredPinionArm,
+  kGatheredGearArm,
+  kGatheredRows
 };
 
-/// Fills `seen`, which has a lane for each of the grid's contacts.
-void see_contacts(InstructionSet instruction_set, const StepBlock& block,
-                  const GridContacts& contacts, const CycleResponse& response, Columns& seen);
+/// Gathers the conditions of the grid's contacts, one lane each.
+void gather_contact_conditions(InstructionSet instruction_set, const StepBlock& block,
+                               const GridContacts& contacts, const CycleResponse& response,
+                               Columns& seen);
 
 }  // namespace tribodyn

@@ -27,7 +27,7 @@ HWY_INLINE void sensitivity_rates(const SensitivityConstants& c, const Sensitivi
                                   const States& by_torque, const States* s, States* ds) {
   const States velocity =
       fused(at.relative_radius, s[kPinionSpeed], -at.gear_radius * s[kGearSpeed]);
-  const States force = fused(at.damping, velocity, at.stiffness * s[kWinding]);
+  const States force = fused(at.damping, velocity, at.stiffness * s[kMeshApproach]);
   const States pinion_twisting = s[kPinionShaftSpeed] - s[kPinionSpeed];
   const States gear_twisting = s[kGearSpeed] - s[kWheelSpeed];
   const States pinion_shaft = fused(c.pinion_shaft_stiffness, s[kPinionShaftTwist],
@@ -35,11 +35,11 @@ HWY_INLINE void sensitivity_rates(const SensitivityConstants& c, const Sensitivi
   const States gear_shaft =
       fused(c.gear_shaft_stiffness, s[kGearShaftTwist], c.gear_shaft_damping * gear_twisting);
   const States pinion =
-      fused(at.pinion_arm, force, fused(at.torque_per_winding, s[kWinding], pinion_shaft));
+      fused(at.pinion_arm, force, fused(at.torque_per_approach, s[kMeshApproach], pinion_shaft));
   const States gear = fused(at.gear_arm, force, -1.0 * gear_shaft);
   ds[kTime] = States(0);
   ds[kPinionShaftTwist] = pinion_twisting;
-  ds[kWinding] = fused(c.pinion_radius, s[kPinionSpeed], -c.gear_radius * s[kGearSpeed]);
+  ds[kMeshApproach] = fused(c.pinion_radius, s[kPinionSpeed], -c.gear_radius * s[kGearSpeed]);
   ds[kGearShaftTwist] = gear_twisting;
   ds[kPinionShaftSpeed] =
       fused(-c.per_pinion_shaft_inertia, pinion_shaft, c.pinion_shaft_per_torque * by_torque);

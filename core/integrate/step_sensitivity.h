@@ -16,21 +16,21 @@ struct SensitivityConstants {
   double pinion_shaft_stiffness, pinion_shaft_damping, gear_shaft_stiffness, gear_shaft_damping;
   double per_pinion_shaft_inertia, per_pinion_inertia, per_gear_inertia, per_wheel_inertia;
   double pinion_radius, gear_radius;  ///< R_p0, R_g0
-  /// What the unknown torque does to the rates of the speeds [1/(kg m2)].
+  /// Derivatives of the rates of the speeds by the unknown torque [1/(kg m2)].
   double pinion_shaft_per_torque, wheel_per_torque;
 };
 
-/// And of one stage of a Runge-Kutta step.
+/// The quantities that the variational equations need of one stage of a Runge-Kutta step.
 struct SensitivityStage {
   double relative_radius, gear_radius;  ///< R_p - e', R_g [m]
   double stiffness, damping;            ///< of the mesh force; 0 across a gap
   double pinion_arm, gear_arm;          ///< what a mesh force turns, friction included [m]
-  double torque_per_winding;            ///< on the pinion, besides the mesh force's [N]
+  double torque_per_approach;           ///< on the pinion, besides the mesh force's [N]
   double time, per_speed;               ///< of a mesh cycle at that speed [s]; 1/speed
   std::array<double, 8> rate;           ///< of time and the seven states by phase
 };
 
-/// Takes a sensitivity along one classical Runge-Kutta step over `length` [cycles].
+/// Integrates the variational equations over one classical Runge-Kutta step of `length` [cycles].
 void advance_sensitivity(InstructionSet instruction_set, const SensitivityConstants& constants,
                          const std::array<SensitivityStage, 4>& stages, double length,
                          Sensitivity& sensitivity);

@@ -116,7 +116,7 @@ class GridRefinement {
     const double off = orbit_.contact_loss ? 0.5 : 1.2;
     const MarchScales scales = march_scales(system_, problem_.mean_pinion_speed);
     const auto direction = orbit_.jacobian->flip_direction();
-    const double share = off / std::max(std::abs(direction(kWinding - 1)), 0.5);
+    const double share = off / std::max(std::abs(direction(kMeshApproach - 1)), 0.5);
     MarchState out = orbit_.pieces.front().start;
     for (int i = kPinionShaftTwist; i <= kWheelSpeed; ++i) {
       out[i] += share * direction(i - 1) * scales.of(system_.mesh(), i);

@@ -93,7 +93,7 @@ void MultipleShooting::set_friction() {
 
 void MultipleShooting::set_jacobian() {
   auto made = std::make_shared<CycleDerivatives>(steps_);
-  compose_steps(instruction_set_, derivatives_, *made);
+  compose_derivatives(instruction_set_, derivatives_, *made);
   Sensitivity sensitivity;
   constexpr std::size_t kMatrix = CycleDerivatives::kMatrix;
   const double* const whole = made->from_section.get() + kMatrix * steps_;
@@ -116,7 +116,7 @@ double MultipleShooting::newton_step() {
   const bool anew = !orbit_.jacobian || orbit_.cycle_derivatives == nullptr ||
                     orbit_.cycle_derivatives->steps != steps_;
   if (anew) derivatives_.resize(CycleDerivatives::kMatrix, steps_);
-  if (!take_steps(instruction_set_, block_, response_, end_, anew ? &derivatives_ : nullptr)) {
+  if (!rk4_steps(instruction_set_, block_, response_, end_, anew ? &derivatives_ : nullptr)) {
     return kBrokenDown;
   }
   evaluations_ += 4L * steps_;
@@ -124,7 +124,7 @@ double MultipleShooting::newton_step() {
   const CycleDerivatives& derivatives = *orbit_.cycle_derivatives;
 
   // From a section that does not move, what is missing at the end; then the section moves.
-  follow_residuals(instruction_set_, derivatives, response_, end_, change_.data());
+  condense_residuals(instruction_set_, derivatives, response_, end_, change_.data());
   const auto change_at = [&](int s) { return change_.data() + kUnknowns * s; };
   double time = 0;
   for (int s = 1; s <= steps_; ++s) time += change_at(s)[kTorqueUnknown];
@@ -135,8 +135,8 @@ double MultipleShooting::newton_step() {
   std::array<double, kUnknowns> at_section{};
   for (int i = 0; i < kUnknowns; ++i) at_section[i] = step(i) * scale_(i);
   const double length =
-      std::max(step.norm(), add_section_change(instruction_set_, derivatives, at_section.data(),
-                                               per_scale_.data(), change_.data()));
+      std::max(step.norm(), expand_section_update(instruction_set_, derivatives, at_section.data(),
+                                                  per_scale_.data(), change_.data()));
   for (int i = 0; i < kTorqueUnknown; ++i) {
     double* const start = response_.start[i + 1];
     for (int s = 0; s < steps_; ++s) start[s] += change_at(s)[i];
@@ -159,7 +159,7 @@ bool MultipleShooting::fill() {
     if (s < steps_) time += duration_[s];
   }
   is_filled_ = true;
-  return fill_response(instruction_set_, block_, response_);
+  return complete_midpoints(instruction_set_, block_, response_);
 }
 
 bool MultipleShooting::evaluate(Nodes nodes) {

@@ -12,7 +12,7 @@ namespace tribodyn {
 struct CycleStorage {
   CycleResponse response;
   CycleFriction frozen;
-  Columns end, derivatives;      ///< of take_steps()
+  Columns end, derivatives;      ///< of rk4_steps()
   std::vector<double> change;    ///< of the starts, and durations: all unknowns of each
   std::vector<double> duration;  ///< of the steps [s]
 };

@@ -14,11 +14,11 @@ namespace tribodyn {
 enum ContactSum { kLossSum, kFrictionTorqueSum, kLoadSum, kFilmRatioLoadSum, kTemperatureLoadSum };
 inline constexpr int kContactSums = 5;
 
-/// An instant of an orbit: what its contacts add up to, with derivatives by mesh force [N] and
+/// An instant of an orbit: the sums over its contacts, with derivatives by mesh force [N] and
 /// speeds of pinion and gear [rad/s].
 struct ContactsAt {
   double mesh_force, transmission_error, transmission_velocity;
-  double load = 0;           ///< what presses the flanks together [N]
+  double load = 0;           ///< compression of the flanks [N]
   bool arms_follow = false;  ///< the friction arms follow the motion
   ArmSlopes arm[2]{};        ///< derivatives of the arms of pinion and gear
   double sum[kContactSums] = {};
@@ -34,7 +34,7 @@ class OrbitContacts {
                 const ContactSensitivityModel& model, const PeriodicOrbit& orbit,
                 double light_load);
 
-  /// False where a contact has no derivatives. Changes the system's regime.
+  /// Returns false if a contact has no derivatives. Changes the system's regime.
   bool differentiate();
   /// Start, middle or end of a piece.
   const ContactsAt& at(std::size_t piece, int part) const {
@@ -44,10 +44,10 @@ class OrbitContacts {
 
   /// Groups of kAdjointLanes figures.
   static constexpr int kGroups = 2;
-  /// Adds what the friction arms of an instant do to the figures of a group.
+  /// Adds the effect of the friction arms of an instant on the figures of a group.
   void weigh_arms(const ContactsAt& at, int group, const std::array<AdjointRow, 2>& arm);
-  /// Adds what the sums of an instant do to the figures of the last group, each to that of its own
-  /// number, and the loss to another one besides.
+  /// Adds the effect of the sums of an instant on the figures of the last group: of each sum on the
+  /// figure of its number, and of the loss also on figure `other`.
   void weigh_sums(const ContactsAt& at, double weight, int other, double loss_weight);
   /// Of the figures of each group, by the parameters.
   using ByParameters = Eigen::Matrix<double, kGroups * kAdjointLanes, kContactParameters>;

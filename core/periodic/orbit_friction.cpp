@@ -40,8 +40,8 @@ std::array<const double*, 3> states(const OrbitPiece& piece) {
 /// Mechanics, loads and motion of the flanks at part 0, 1, 2 of a piece: its start, middle, end.
 /// Tells of each loaded contact: on_contact(flank pair, its kinematics, its conditions).
 template <class OnContact>
-void see_flanks(GearPairSystem& system, const MeshGrid& grid, const OrbitPiece& piece, int part,
-                Instant& at, OnContact&& on_contact) {
+void visit_flanks(GearPairSystem& system, const MeshGrid& grid, const OrbitPiece& piece, int part,
+                  Instant& at, OnContact&& on_contact) {
   system.regime = piece.regime;
   const double* state = states(piece)[part];
   if (piece.node >= 0) {
@@ -125,16 +125,16 @@ SolvedPieces solved_pieces(GearPairSystem& system, const MeshGrid& grid,
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     for (int part = n - out.first[i]; part < 3; ++part, ++n) {
       Instant& at = out.instants[n];
-      see_flanks(system, grid, pieces[i], part, at,
-                 [&](int k, const FlankKinematics&, const ContactConditions& conditions) {
-                   ContactFigures& solution = at.contact[k];
-                   contacts.copy(contact++, solution);
-                   system.contact_model().complete(conditions, solution);
-                   at.pinion_friction_torque +=
-                       at.motion[k].pinion_friction_arm * solution.friction;
-                   at.gear_friction_torque += at.motion[k].gear_friction_arm * solution.friction;
-                   at.loss_power += at.motion[k].sliding_speed * solution.friction;
-                 });
+      visit_flanks(system, grid, pieces[i], part, at,
+                   [&](int k, const FlankKinematics&, const ContactConditions& conditions) {
+                     ContactFigures& solution = at.contact[k];
+                     contacts.copy(contact++, solution);
+                     system.contact_model().complete(conditions, solution);
+                     at.pinion_friction_torque +=
+                         at.motion[k].pinion_friction_arm * solution.friction;
+                     at.gear_friction_torque += at.motion[k].gear_friction_arm * solution.friction;
+                     at.loss_power += at.motion[k].sliding_speed * solution.friction;
+                   });
     }
   }
   return out;
@@ -161,7 +161,7 @@ int OrbitFriction::gather(const MeshGrid& grid, const std::vector<OrbitPiece>& p
   samples_.resize(number_instants(pieces, first_));
   const std::size_t most = kFlankPairs * samples_.size();
   if (geometries_.size() < most) geometries_.resize(most);
-  seen_.resize(kSeenRows, most);
+  gathered_.resize(kGatheredRows, most);
   Instant at;
   int n = 0, count = 0;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -169,25 +169,25 @@ int OrbitFriction::gather(const MeshGrid& grid, const std::vector<OrbitPiece>& p
     for (int part = n - first_[i]; part < 3; ++part, ++n) {
       Sample& place = samples_[n];
       place.first = count;
-      see_flanks(system_, grid, p, part, at,
-                 [&](int k, const FlankKinematics& flank, const ContactConditions& c) {
-                   const FlankMotion& motion = at.motion[k];
-                   seen_[kSeenLoad][count] = c.load;
-                   seen_[kSeenPinionX][count] = c.velocity_1_x;
-                   seen_[kSeenPinionY][count] = c.velocity_1_y;
-                   seen_[kSeenGearX][count] = c.velocity_2_x;
-                   seen_[kSeenGearY][count] = c.velocity_2_y;
-                   seen_[kSeenSlidingSpeed][count] = motion.sliding_speed;
-                   seen_[kSeenPinionArm][count] = motion.pinion_friction_arm;
-                   seen_[kSeenGearArm][count] = motion.gear_friction_arm;
-                   if (p.node >= 0) {
-                     geometries_.copy(count, grid.contacts().geometries,
-                                      grid.contact(p.node + part, k));
-                   } else {
-                     geometries_.set(count, flank.radius_x, flank.radius_y);
-                   }
-                   ++count;
-                 });
+      visit_flanks(system_, grid, p, part, at,
+                   [&](int k, const FlankKinematics& flank, const ContactConditions& c) {
+                     const FlankMotion& motion = at.motion[k];
+                     gathered_[kGatheredLoad][count] = c.load;
+                     gathered_[kGatheredPinionX][count] = c.velocity_1_x;
+                     gathered_[kGatheredPinionY][count] = c.velocity_1_y;
+                     gathered_[kGatheredGearX][count] = c.velocity_2_x;
+                     gathered_[kGatheredGearY][count] = c.velocity_2_y;
+                     gathered_[kGatheredSlidingSpeed][count] = motion.sliding_speed;
+                     gathered_[kGatheredPinionArm][count] = motion.pinion_friction_arm;
+                     gathered_[kGatheredGearArm][count] = motion.gear_friction_arm;
+                     if (p.node >= 0) {
+                       geometries_.copy(count, grid.contacts().geometries,
+                                        grid.contact(p.node + part, k));
+                     } else {
+                       geometries_.set(count, flank.radius_x, flank.radius_y);
+                     }
+                     ++count;
+                   });
       place.count = count - place.first;
       place.load = p.regime.load(at.mesh_force);
       place.mesh_force = at.mesh_force;
@@ -203,15 +203,17 @@ bool OrbitFriction::solve_contacts(const ContactGeometries& geometries, int coun
   coefficient_ ? solved_->resize(count) : solved_->resize_for_overwrite(count);
   FlankContactBatchResults results = solved_->results();
   if (coefficient_) {
-    for (int i = 0; i < count; ++i) results.friction[i] = *coefficient_ * seen_[kSeenLoad][i];
+    for (int i = 0; i < count; ++i)
+      results.friction[i] = *coefficient_ * gathered_[kGatheredLoad][i];
     return true;
   }
   if (status_.size() < static_cast<std::size_t>(count)) status_.resize(count);
   results.status = status_.data();
-  contacts_.solve(geometries, 0, count,
-                  {seen_[kSeenLoad], seen_[kSeenPinionX], seen_[kSeenPinionY], seen_[kSeenGearX],
-                   seen_[kSeenGearY]},
-                  results);
+  contacts_.solve(
+      geometries, 0, count,
+      {gathered_[kGatheredLoad], gathered_[kGatheredPinionX], gathered_[kGatheredPinionY],
+       gathered_[kGatheredGearX], gathered_[kGatheredGearY]},
+      results);
   system_.count_contacts(count);
   for (int i = 0; i < count; ++i) {
     if (status_[i] != ContactStatus::kOk) system_.refuse(status_[i]);
@@ -238,9 +240,9 @@ bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>
         loss = 0;
         FrictionArms torque;
         for (int n = place.first; n < place.first + place.count; ++n) {
-          torque.pinion += seen_[kSeenPinionArm][n] * contact_friction[n];
-          torque.gear += seen_[kSeenGearArm][n] * contact_friction[n];
-          loss += seen_[kSeenSlidingSpeed][n] * contact_friction[n];
+          torque.pinion += gathered_[kGatheredPinionArm][n] * contact_friction[n];
+          torque.gear += gathered_[kGatheredGearArm][n] * contact_friction[n];
+          loss += gathered_[kGatheredSlidingSpeed][n] * contact_friction[n];
         }
         // Across a gap it goes from the value before to that after: no jump where a flank meets.
         if (place.load > light) {
@@ -275,8 +277,8 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
                              const CycleResponse& response, FrozenFriction& friction,
                              OrbitFigures& f) {
   const auto count = static_cast<int>(contacts.node.size());
-  seen_.resize(kSeenRows, contacts.node.size());
-  see_contacts(instruction_set(), block, contacts, response, seen_);
+  gathered_.resize(kGatheredRows, contacts.node.size());
+  gather_contact_conditions(instruction_set(), block, contacts, response, gathered_);
   if (!solve_contacts(contacts.geometries, count)) return false;
   const double* contact_friction = solved_->friction();
   friction.clear(contacts.first.size());
@@ -290,9 +292,9 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
     double loss = 0;
     FrictionArms torque;
     for (int n = contacts.first[place]; n < contacts.first[place + 1]; ++n) {
-      torque.pinion += seen_[kSeenPinionArm][n] * contact_friction[n];
-      torque.gear += seen_[kSeenGearArm][n] * contact_friction[n];
-      loss += seen_[kSeenSlidingSpeed][n] * contact_friction[n];
+      torque.pinion += gathered_[kGatheredPinionArm][n] * contact_friction[n];
+      torque.gear += gathered_[kGatheredGearArm][n] * contact_friction[n];
+      loss += gathered_[kGatheredSlidingSpeed][n] * contact_friction[n];
     }
     const double load = block.side * at[kMeshForceRow][lane];
     friction.add(static_cast<double>(node) / last, {torque.pinion / load, torque.gear / load},

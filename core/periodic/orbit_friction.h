@@ -99,7 +99,7 @@ class OrbitFriction {
   };
   /// Returns the number of contacts.
   int gather(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces);
-  /// Solves the contacts of `seen_`. Returns false if one is refused.
+  /// Solves the contacts of `gathered_`. Returns false if one is refused.
   bool solve_contacts(const ContactGeometries& geometries, int count);
 
   GearPairSystem& system_;
@@ -108,7 +108,7 @@ class OrbitFriction {
   ContactGeometries geometries_;
   std::vector<int> first_;       // sample of each piece
   std::vector<Sample> samples_;  // shared as the instants of SolvedPieces
-  Columns seen_;                 // SeenRow
+  Columns gathered_;             // GatheredRow
   std::shared_ptr<SolvedContacts> solved_ = std::make_shared<SolvedContacts>();
   std::vector<ContactStatus> status_;
   double least_pressing_force_ = 0;

@@ -27,7 +27,7 @@ static_assert(kMaximum + 1 == kAdjointLanes && kRates == kAdjointLanes);
 /// An instant of a piece: what its rates depend on, and its transmission error.
 struct DifferentiatedInstant {
   StageSlopes slopes;
-  double error_by_winding, velocity_by_winding;
+  double error_by_approach, velocity_by_approach;
 };
 
 MarchScales scales_under(GearPairSystem& system, const Torques& torques, double mean_speed) {
@@ -56,7 +56,7 @@ class OrbitDifferentiator {
     find_extremes();
     for (int i = 0; i < kRates; ++i) adjoint_[kOfEnd][i][i] = 1;
     for (std::size_t i = orbit_.pieces.size(); i-- > 0;) {
-      see_instants(i);
+      evaluate_instants(i);
       if (i + 1 < orbit_.pieces.size()) cross_event(i);
       pass_piece(i);
     }
@@ -119,23 +119,24 @@ class OrbitDifferentiator {
     system_.motion(y.data(), at, s.rate.data());
     const bool gap = regime.side == 0;
     const double load_by_force = s.load > 0 ? regime.side : 0;
-    const double radius_by_winding = system_.gear_radius_by_winding(phase, y[kWinding]);
-    out.error_by_winding = m.gear_contact_radius / system_.mesh().mean_gear_contact_radius();
-    out.velocity_by_winding = -radius_by_winding * y[kGearSpeed];
+    const double radius_by_approach = system_.gear_radius_by_approach(phase, y[kMeshApproach]);
+    out.error_by_approach = m.gear_contact_radius / system_.mesh().mean_gear_contact_radius();
+    out.velocity_by_approach = -radius_by_approach * y[kGearSpeed];
     s.relative_radius = m.pinion_contact_radius - m.static_transmission_error_slope;
     s.gear_radius = m.gear_contact_radius;
     s.damping =
         gap && system_.options().damping_in_contact_only ? 0 : system_.dynamics().mesh_damping;
-    s.force_by_winding =
-        (gap ? 0 : m.mesh_stiffness * out.error_by_winding) + s.damping * out.velocity_by_winding;
+    s.force_by_approach =
+        (gap ? 0 : m.mesh_stiffness * out.error_by_approach) + s.damping * out.velocity_by_approach;
     s.pinion_arm = load_by_force * arms.pinion - m.pinion_contact_radius;
     s.gear_arm = load_by_force * arms.gear + m.gear_contact_radius;
-    s.pinion_torque_by_winding = 0;
-    s.gear_torque_by_winding = at.mesh_force * radius_by_winding;
+    s.pinion_torque_by_approach = 0;
+    s.gear_torque_by_approach = at.mesh_force * radius_by_approach;
     if (system_.options().energy_consistent) {
       s.pinion_arm += m.static_transmission_error_slope;
       if (!gap) {
-        s.pinion_torque_by_winding = -m.mesh_stiffness_slope * at.deflection * out.error_by_winding;
+        s.pinion_torque_by_approach =
+            -m.mesh_stiffness_slope * at.deflection * out.error_by_approach;
       }
     }
     s.time = s.rate[kTime];
@@ -144,7 +145,7 @@ class OrbitDifferentiator {
 
   /// The parts of a piece and the later stages of its step. The end may be the start of the piece
   /// behind it.
-  void see_instants(std::size_t index) {
+  void evaluate_instants(std::size_t index) {
     const OrbitPiece& p = orbit_.pieces[index];
     constexpr double kNode[4] = {0, 0.5, 0.5, 1};
     FrictionArms arms[3];
@@ -210,7 +211,7 @@ class OrbitDifferentiator {
   static ByState by_state(const DifferentiatedInstant& at, const ArmSlopes& by_motion) {
     ByState out{};
     const StageSlopes& s = at.slopes;
-    out[kWinding] = by_motion[0] * s.force_by_winding;
+    out[kMeshApproach] = by_motion[0] * s.force_by_approach;
     out[kPinionSpeed] = by_motion[0] * s.damping * s.relative_radius + by_motion[1];
     out[kGearSpeed] = -by_motion[0] * s.damping * s.gear_radius + by_motion[2];
     return out;
@@ -224,7 +225,7 @@ class OrbitDifferentiator {
     const DifferentiatedInstant& end = part_[2];
     ByState zero{};
     if (touch) {
-      zero[kWinding] = end.error_by_winding;
+      zero[kMeshApproach] = end.error_by_approach;
     } else {
       zero = by_state(end, {1, 0, 0});
     }
@@ -341,8 +342,8 @@ class OrbitDifferentiator {
     for (const int end : {0, 1}) {
       const DifferentiatedInstant& at = part_[extreme.half + end];
       StateAdjoint& to = direct_[extreme.half + end];
-      to[kWinding][lane] +=
-          value[end] * at.error_by_winding + h * slope[end] * at.velocity_by_winding;
+      to[kMeshApproach][lane] +=
+          value[end] * at.error_by_approach + h * slope[end] * at.velocity_by_approach;
       to[kPinionSpeed][lane] += h * slope[end] * at.slopes.relative_radius;
       to[kGearSpeed][lane] -= h * slope[end] * at.slopes.gear_radius;
       by_h += slope[end] * contacts_.at(extreme.piece, extreme.half + end).transmission_velocity;

@@ -20,7 +20,8 @@ void correct_period(GearPairSystem& system, const MarchState& before, int period
   } else {
     torques.pinion -= excess;
     after[kPinionShaftTwist] -= excess / d.pinion_shaft_stiffness;
-    after[kWinding] -= excess / (mesh.mean_pinion_contact_radius() * mesh.mean_mesh_stiffness());
+    after[kMeshApproach] -=
+        excess / (mesh.mean_pinion_contact_radius() * mesh.mean_mesh_stiffness());
   }
   system.set_torques(torques);
   const double shift = mean_pinion_speed - period * system.cycle_angle() / after[kTime];

@@ -4,10 +4,10 @@
 
 namespace tribodyn {
 
-/// What a marched period tells of the unknown torque: the momentum that the whole train gained must
-/// come from it, its wind-up goes into mesh and shafts, and the mean speed is put back.
-/// `before`: the state at the section a period ago; `after[kTime]`: how long it took [s].
-/// Changes the system's torques.
+/// Corrects the unknown torque and the state after a period: the torque takes up the momentum that
+/// the whole train gained, its wind-up goes into mesh and shafts, and the mean speed is restored.
+/// `before`: the state at the section a period ago; `after[kTime]`: the duration [s]. Changes the
+/// system's torques.
 void correct_period(GearPairSystem& system, const MarchState& before, int period,
                     double mean_pinion_speed, bool solve_wheel_torque, MarchState& after);
 

@@ -16,8 +16,8 @@ constexpr int kFirstCycles = 8;            // marched before anything is extrapo
 constexpr double kStabilityMargin = 3e-4;  // finite differences of the march are that good
 using Vector = Eigen::Matrix<double, kUnknowns, 1>;
 
-constexpr int kStateOf[kUnknowns - 1] = {kPinionShaftTwist, kWinding,     kGearShaftTwist,
-                                         kPinionShaftSpeed, kPinionSpeed, kGearSpeed,
+constexpr int kStateOf[kUnknowns - 1] = {kPinionShaftTwist, kMeshApproach, kGearShaftTwist,
+                                         kPinionShaftSpeed, kPinionSpeed,  kGearSpeed,
                                          kWheelSpeed};
 
 /// The period map with its corrections, in scaled unknowns.
@@ -50,8 +50,8 @@ class PeriodMap {
   /// tiny step.
   bool is_sensible(const Vector& from, const Vector& to) const {
     constexpr double kFar = 100;  // of the backlash and the static deflection
-    constexpr int kWindingUnknown = 1;
-    const double moved = std::abs(to(kWindingUnknown) - from(kWindingUnknown)) * scales_.length;
+    constexpr int kApproachUnknown = 1;
+    const double moved = std::abs(to(kApproachUnknown) - from(kApproachUnknown)) * scales_.length;
     return moved < kFar * (2 * system_.dynamics().half_backlash + scales_.length);
   }
 

@@ -34,7 +34,7 @@ Swing swing_of(const MeshData& mesh) {
 }
 
 /// Overlap of the flanks of one side, and the stiffness, at places of a cycle in which the gears
-/// float, their winding moved by `shift` [m].
+/// float, their mesh approach moved by `shift` [m].
 struct Overlaps {
   std::vector<double> length, stiffness;
 
@@ -45,11 +45,12 @@ struct Overlaps {
     Mechanics at;
     for (const OrbitPiece& p : pieces) {
       for (int i = 0; i < places; ++i) {
-        // What the float leaves of the winding is smooth: by the parabola.
+        // What the float leaves of the mesh approach is smooth: by the parabola.
         const double t = static_cast<double>(i) / places;
         MarchState y = p.start;
-        y[kWinding] = shift + (1 - t) * (1 - 2 * t) * p.start[kWinding] +
-                      4 * t * (1 - t) * p.middle[kWinding] + t * (2 * t - 1) * p.end[kWinding];
+        y[kMeshApproach] = shift + (1 - t) * (1 - 2 * t) * p.start[kMeshApproach] +
+                           4 * t * (1 - t) * p.middle[kMeshApproach] +
+                           t * (2 * t - 1) * p.end[kMeshApproach];
         system.kinematics(p.phase + t * p.length, y.data(), at);
         length.push_back(side * at.transmission_error - system.dynamics().half_backlash);
         stiffness.push_back(at.mesh.mesh_stiffness);
@@ -90,24 +91,24 @@ double shift_to_flanks(const GearPairSystem& system, const std::vector<OrbitPiec
   return shift;
 }
 
-/// The winding at which the transmission error at constant speeds swings about 0 [m].
+/// The mesh approach at which the transmission error at constant speeds swings about 0 [m].
 double middle_of_backlash(const GearPairSystem& system, const Swing& swing) {
   return -system.dynamics().half_backlash - 0.5 * (swing.low + swing.high);
 }
 
 /// A mesh cycle in which the gears float in the backlash under no torque, and repeat that. Empty if
-/// flanks meet. `winding`: near that at mesh phase 0 [m].
+/// flanks meet. `approach`: near that at mesh phase 0 [m].
 ///
 /// The cycle is affine in its start, so a step or two of Newton's method find what repeats.
 /// Wherever the gears float in the backlash they do so in the same way, and at any speed: of the
 /// corrections that these two freedoms leave open the shortest is taken.
-std::vector<OrbitPiece> float_freely(GearPairSystem& system, const MeshGrid& grid, double winding,
+std::vector<OrbitPiece> float_freely(GearPairSystem& system, const MeshGrid& grid, double approach,
                                      double mean_pinion_speed) {
   constexpr int kCorrections = 3, kStates = kWheelSpeed;  // the seven of the section
   constexpr double kFreedom = 1e-6;                       // of the largest pivot
   const MeshData& mesh = system.mesh();
   MarchState start{};
-  start[kWinding] = winding;
+  start[kMeshApproach] = approach;
   start[kPinionShaftSpeed] = start[kPinionSpeed] = mean_pinion_speed;
   start[kGearSpeed] = start[kWheelSpeed] =
       mean_pinion_speed * mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
@@ -168,16 +169,16 @@ std::optional<MarchState> tapping_start(GearPairSystem& system, const MeshGrid& 
       float_freely(system, grid, middle_of_backlash(system, swing), mean_pinion_speed);
   if (!pieces.empty()) {
     const double shift = shift_to_flanks(system, pieces, side, force);
-    const double winding =
-        pieces.front().start[kWinding] + shift - side * kClearance * (swing.high - swing.low);
-    auto close = float_freely(system, grid, winding, mean_pinion_speed);
+    const double approach =
+        pieces.front().start[kMeshApproach] + shift - side * kClearance * (swing.high - swing.low);
+    auto close = float_freely(system, grid, approach, mean_pinion_speed);
     if (!close.empty()) pieces = std::move(close);
   }
   system.set_torques(torques);
   if (pieces.empty()) return std::nullopt;
 
   MarchState out = pieces.front().start;
-  out[kWinding] += shift_to_flanks(system, pieces, side, force);
+  out[kMeshApproach] += shift_to_flanks(system, pieces, side, force);
   out[kPinionShaftTwist] += torques.pinion / d.pinion_shaft_stiffness;
   out[kGearShaftTwist] += torques.wheel / d.gear_shaft_stiffness;
   return out;

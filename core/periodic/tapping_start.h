@@ -7,11 +7,13 @@
 
 namespace tribodyn {
 
-/// Under a load so light that the flanks cannot follow the transmission error they float in the
-/// backlash and tap each other once in a mesh cycle. The state at mesh phase 0 of such a response,
-/// nearly: how the gears float is marched under no torque, in the middle of the backlash, until the
-/// damper has settled it; then they are brought so near that the mesh stiffness times the overlap
-/// of the flanks carries the system's pinion torque in the mean over a mesh cycle.
+/// A state at mesh phase 0 near the orbit of flanks that tap each other once in a mesh cycle, under
+/// a load so light that they cannot follow the transmission error:
+///  1. The gears float in the middle of the backlash under no torque. Newton's method finds the
+///  cycle
+///     that repeats; of the corrections that its two freedoms leave open the shortest is taken.
+///  2. The mesh approach is moved until the mesh stiffness times the overlap of the flanks carries
+///     the system's pinion torque in the mean over a mesh cycle.
 ///
 /// Returns nullopt if that load holds the flanks together at all phases, if there is no pinion
 /// torque, or if the gears do not float: too little backlash. Leaves the system's torques; its

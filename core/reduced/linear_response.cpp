@@ -165,19 +165,20 @@ double keep_mean_force(const GearPairSystem& system, const std::vector<double>& 
 }  // namespace
 
 void ImposedMotion::resize(std::size_t count) {
-  for (auto* v : {&winding, &transmission_error, &gear_torque, &mesh_stiffness}) v->resize(count);
+  for (auto* v : {&mesh_approach, &transmission_error, &gear_torque, &mesh_stiffness})
+    v->resize(count);
 }
 
 InertialCorrection inertial_correction(const GearPairSystem& system, double mean_pinion_speed,
                                        const ImposedMotion& motion) {
-  const int phases = static_cast<int>(motion.winding.size());
+  const int phases = static_cast<int>(motion.mesh_approach.size());
   const Harmonics harmonics(phases, std::min(phases / 2 - 1, kMostHarmonics));
   const int count = harmonics.count();
   const double first = mean_pinion_speed * system.mesh().pinion_teeth();
   const double pinion_radius = system.mesh().mean_pinion_contact_radius();
   const double gear_radius = system.mesh().mean_gear_contact_radius();
 
-  const std::vector<Complex> winding = harmonics.of(motion.winding);
+  const std::vector<Complex> approach = harmonics.of(motion.mesh_approach);
   const std::vector<Complex> error = harmonics.of(motion.transmission_error);
   const std::vector<Complex> gear_torque = harmonics.of(motion.gear_torque);
   std::vector<Complex> pinion_torque(count);
@@ -188,7 +189,7 @@ InertialCorrection inertial_correction(const GearPairSystem& system, double mean
   at.reserve(count);
   for (int h = 1; h <= count; ++h) {
     const MeshSides& here = at.emplace_back(system, first * h);
-    source[h - 1] = -winding[h - 1] - here.compliance * here.damper * error[h - 1] +
+    source[h - 1] = -approach[h - 1] - here.compliance * here.damper * error[h - 1] +
                     pinion_radius * pinion_torque[h - 1] * here.per_pinion -
                     gear_radius * gear_torque[h - 1] * here.per_gear;
   }
@@ -214,12 +215,12 @@ InertialCorrection inertial_correction(const GearPairSystem& system, double mean
   out.largest = keep_mean_force(system, motion.mesh_stiffness, out.transmission_error);
 
   // Beyond the highest: what is asked falls like kinks do, what is answered is known.
-  const double asked_winding = edge_of(winding), asked_torque = edge_of(gear_torque),
+  const double asked_approach = edge_of(approach), asked_torque = edge_of(gear_torque),
                asked_pinion_torque = edge_of(pinion_torque);
   const int last = static_cast<int>(std::min(1.5 * mesh_frequency(system) / first, 1e4));
   for (int h = count + 1; h <= last && motion.tail; ++h) {
     const MeshSides here(system, first * h);
-    const double asked = asked_winding +
+    const double asked = asked_approach +
                          pinion_radius * asked_pinion_torque * std::abs(here.per_pinion) +
                          gear_radius * asked_torque * std::abs(here.per_gear);
     out.unresolved += asked * square(1.0 / h) * std::abs(here.amplification());

@@ -9,7 +9,7 @@ namespace tribodyn {
 /// A motion in which flanks follow each other without inertia, at even mesh phases n / count of one
 /// mesh cycle, n = 0 ... count - 1; `count` even, at least 8.
 struct ImposedMotion {
-  std::vector<double> winding;             ///< R_p0 phi_p - R_g0 phi_g [m]
+  std::vector<double> mesh_approach;       ///< R_p0 phi_p - R_g0 phi_g [m]
   std::vector<double> transmission_error;  ///< x [m]
   std::vector<double> pinion_torque;       ///< left over on the pinion [N m]; empty: none
   std::vector<double> gear_torque;         ///< left over on the gear: R_g F + T_fr,g - T_w [N m]
@@ -35,8 +35,8 @@ struct InertialCorrection {
 
 /// Eqs 1-6 for small vibrations about a mean, harmonic by harmonic: mean contact radii and mesh
 /// stiffness, flanks that never part. With D_p, D_g the dynamic stiffnesses of the two sides of the
-/// mesh, each rotor with its shaft and what is behind it, w the imposed winding and tau what the
-/// imposed motion leaves unbalanced, the correction to x is
+/// mesh, each rotor with its shaft and what is behind it, w the imposed mesh approach and tau what
+/// the imposed motion leaves unbalanced, the correction to x is
 ///   (1 + Y (k + i Omega c)) dx = -w - i Omega c Y x + R_p tau_p / D_p - R_g tau_g / D_g,
 ///   Y = R_p^2 / D_p + R_g^2 / D_g,
 /// and once more for the force (k_m - k) dx that the ripple of the stiffness adds. A constant keeps

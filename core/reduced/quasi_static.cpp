@@ -159,7 +159,7 @@ ImposedMotion imposed_motion(const GearPairSystem& system, const MeshGrid& grid,
   for (std::size_t n = 0; n < count; ++n) {
     const double phase = static_cast<double>(n) / static_cast<double>(count);
     system.kinematics(grid.at(static_cast<int>(n)), nodes[n].data(), at);
-    out.winding[n] = nodes[n][kWinding];
+    out.mesh_approach[n] = nodes[n][kMeshApproach];
     out.transmission_error[n] = at.transmission_error;
     out.mesh_stiffness[n] = at.mesh.mesh_stiffness;
     out.gear_torque[n] = at.mesh.gear_contact_radius * at.mesh_force +
@@ -177,11 +177,11 @@ std::vector<MarchState> corrected(const GearPairSystem& system, const MeshGrid& 
   for (std::size_t n = 0; n <= count; ++n) {
     const std::size_t i = n % count;
     MarchState& y = nodes[n];
-    y[kWinding] += change.transmission_error[i];
+    y[kMeshApproach] += change.transmission_error[i];
     y[kPinionSpeed] += change.pinion_speed[i];
     y[kPinionShaftSpeed] += change.pinion_shaft_speed[i];
     const MeshFunctions f =
-        system.mesh().functions(grid.at(static_cast<int>(n)), lag * y[kWinding]);
+        system.mesh().functions(grid.at(static_cast<int>(n)), lag * y[kMeshApproach]);
     y[kGearSpeed] =
         ((f.pinion_contact_radius - f.static_transmission_error_slope) * y[kPinionSpeed] -
          change.transmission_velocity[i]) /
@@ -230,14 +230,15 @@ MarchState static_equilibrium(const GearPairSystem& system, const MeshPhase& at,
   const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
   const MeshFunctions& p = at.pinion;
   const double force = system.torques().pinion / (p.pinion_contact_radius - side * friction.pinion);
-  const double winding = side * system.dynamics().half_backlash + force / p.mesh_stiffness +
-                         p.static_transmission_error - system.dynamics().half_backlash;
+  const double approach = side * system.dynamics().half_backlash + force / p.mesh_stiffness +
+                          p.static_transmission_error - system.dynamics().half_backlash;
   MarchState y{};
   MeshFunctions f{};
-  y[kWinding] = winding;
-  for (int i = 0; i < 4; ++i) {  // R_g's ripple over the winding: contracts by 1e-2 and is tiny
-    f = system.mesh().functions(at, lag * y[kWinding]);
-    y[kWinding] = winding - f.radius_integral;
+  y[kMeshApproach] = approach;
+  for (int i = 0; i < 4;
+       ++i) {  // R_g's ripple over the mesh approach: contracts by 1e-2 and is tiny
+    f = system.mesh().functions(at, lag * y[kMeshApproach]);
+    y[kMeshApproach] = approach - f.radius_integral;
   }
   y[kTime] = phase * system.cycle_angle() / speed;
   y[kPinionShaftSpeed] = y[kPinionSpeed] = speed;

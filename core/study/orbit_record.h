@@ -6,13 +6,13 @@
 
 namespace tribodyn {
 
-/// Gathers what the pieces of a periodic orbit, solved, tell: integrals by Simpson's rule over each
-/// piece, extremes, openings of the gap. Leaves the system in the regime at the section.
+/// Records the solved pieces of a periodic orbit: integrals by Simpson's rule over each piece,
+/// extremes, openings of the gap. Leaves the system in the regime at the section.
 void record_orbit(GearPairSystem& system, const PeriodicOrbit& orbit, const SolvedPieces& solved,
                   ResponseRecord& record);
 
-/// Samples of the history: states by the cubic through the ends of a piece with their rates,
-/// friction solved at each; then copies of the period.
+/// Samples the history: states by the cubic through the ends of a piece with their rates, friction
+/// solved at each; then copies of the period.
 void sample_orbit(GearPairSystem& system, const PeriodicOrbit& orbit, const SolvedPieces& solved,
                   HistorySampler& history);
 

@@ -10,8 +10,8 @@
 
 namespace tribodyn {
 
-/// What is made of a gear set once, for all fluids, speeds and loads. One thread at a time: what is
-/// asked for is made then. Nothing in it depends on who asked.
+/// Everything that depends on the gear set alone, for all fluids, speeds and loads. Parts are made
+/// at their first use and do not depend on the user. One thread at a time.
 class PreparedGearSet {
  public:
   /// Throws Refusal as check(GearSet) does.

@@ -45,7 +45,7 @@ class ResponseRecord {
     /// 0 where nothing was added.
     Extremes with_mean(double mean) const;
   };
-  /// What counts on loaded flanks only.
+  /// Outputs of contacts that count on loaded flanks only.
   enum ContactFigure {
     kFilm,
     kFilmRatio,

@@ -27,8 +27,8 @@ struct SweepOptions {
 /// direction.
 struct BranchEnd {
   double followed_to = 0;  ///< the last speed on the branch [m/s]
-  /// Where it is not found any more [m/s]: 0.04 km/h on, or more where hardly anything attracts and
-  /// some hundred mesh cycles of marching do not tell.
+  /// The nearest speed at which it is not found [m/s]: 0.04 km/h farther, or more where hardly any
+  /// response attracts and some hundred mesh cycles of marching do not decide.
   double gone_at = 0;
 };
 
@@ -48,9 +48,9 @@ struct SweepPoint {
 /// none. That is so where flanks part at one of the neighbours only, where the period differs, or
 /// where the swing of the transmission error differs by 30 %; a branch that is left and found again
 /// between two neighbours is not noticed. The points' method is used: by kAutomatic shooting first,
-/// and where shooting cannot tell some hundred mesh cycles of marching at a speed. By kShooting
-/// alone no end is told that shooting does not see beyond. Returned in ascending speed. `on_point`
-/// is called after each. `gear_set`: as of solve_operating_point.
+/// and where shooting cannot tell some hundred mesh cycles of marching at a speed. With
+/// kShooting an end is reported only if shooting finds the branch beyond it. Returned in ascending
+/// speed. `on_point` is called after each. `gear_set`: as of solve_operating_point.
 std::vector<SweepPoint> sweep_speed(const Scene& scene, std::vector<double> vehicle_speeds,
                                     double ascent_angle, const SweepOptions& options,
                                     const std::function<void(const SweepPoint&)>& on_point = {},

@@ -53,12 +53,12 @@ double ripple_integral(const FourierSeries& s, double theta, int teeth) {
 }
 
 /// Eq 6 in closed form.
-double transmission_error(const GearSet& set, double phase, double winding) {
+double transmission_error(const GearSet& set, double phase, double approach) {
   const double theta_p = 2 * std::numbers::pi * phase;
   const double mean_gear_radius =
       set.series.pinion_contact_radius.mean * set.gear_teeth / set.pinion_teeth;
-  const double theta_g = theta_p - set.gear_teeth * winding / mean_gear_radius;
-  return set.dynamics.half_backlash + winding +
+  const double theta_g = theta_p - set.gear_teeth * approach / mean_gear_radius;
+  return set.dynamics.half_backlash + approach +
          ripple_integral(set.series.pinion_contact_radius, theta_p, set.pinion_teeth) -
          ripple_integral(set.series.gear_contact_radius, theta_g, set.gear_teeth) -
          value_of(set.series.static_transmission_error, theta_p);
@@ -67,7 +67,7 @@ double transmission_error(const GearSet& set, double phase, double winding) {
 /// Kinetic and elastic energy at a mesh phase.
 double stored_energy(const GearSet& set, double phase, const double* y) {
   const DrivelineDynamics& d = set.dynamics;
-  const double x = transmission_error(set, phase, y[kWinding]);
+  const double x = transmission_error(set, phase, y[kMeshApproach]);
   const double b = d.half_backlash;
   const double f = x > b ? x - b : x < -b ? x + b : 0;
   const double stiffness = value_of(set.series.mesh_stiffness, 2 * std::numbers::pi * phase);
@@ -228,10 +228,11 @@ TEST(TransmissionErrorIdentities, ClosedFormIsThatOfTheSeries) {
   for (int i = 0; i < kRandomStates; ++i) {
     MarchState y{};
     const double phase = draw.between(0, 1);
-    y[kWinding] = draw.between(-200e-6, 200e-6);
+    y[kMeshApproach] = draw.between(-200e-6, 200e-6);
     Instant at;
     bench.system.kinematics(phase, y.data(), at);
-    EXPECT_NEAR(at.transmission_error, transmission_error(bench.scene.gear_set, phase, y[kWinding]),
+    EXPECT_NEAR(at.transmission_error,
+                transmission_error(bench.scene.gear_set, phase, y[kMeshApproach]),
                 1e-18 + 1e-15 * 75e-6);
   }
 }
@@ -246,17 +247,17 @@ TEST(TransmissionErrorIdentities, VelocityIsTheDerivativeAlongTheMotion) {
   for (int i = 0; i < kRandomStates; ++i) {
     MarchState y{};
     const double phase = draw.between(0.1, 0.9);
-    y[kWinding] = draw.between(-200e-6, 200e-6);
+    y[kMeshApproach] = draw.between(-200e-6, 200e-6);
     y[kPinionSpeed] = draw.between(50, 600);
     y[kGearSpeed] = y[kPinionSpeed] * 13 / 36 * draw.between(0.98, 1.02);
     Instant at;
     bench.system.kinematics(phase, y.data(), at);
     const double step = 1e-3 * cycle / y[kPinionSpeed];  // a thousandth of a mesh cycle
-    const double winding_speed = bench.mesh.mean_pinion_contact_radius() * y[kPinionSpeed] -
-                                 bench.mesh.mean_gear_contact_radius() * y[kGearSpeed];
+    const double approach_speed = bench.mesh.mean_pinion_contact_radius() * y[kPinionSpeed] -
+                                  bench.mesh.mean_gear_contact_radius() * y[kGearSpeed];
     const auto x = [&](double time) {
       return transmission_error(bench.scene.gear_set, phase + time * y[kPinionSpeed] / cycle,
-                                y[kWinding] + time * winding_speed);
+                                y[kMeshApproach] + time * approach_speed);
     };
     const auto difference = [&](double n) { return x(n * step) - x(-n * step); };
     const double slope = (4.0 / 5 * difference(1) - 1.0 / 5 * difference(2) +
@@ -273,7 +274,7 @@ TEST(TransmissionErrorIdentities, AThousandCyclesOfTurningDoNotWindUp) {
   const Bench bench(reference_scene());
   for (const double phase : {0.0, 0.3, 0.71}) {
     MarchState y{};
-    y[kWinding] = 30e-6;
+    y[kMeshApproach] = 30e-6;
     Instant first, later;
     bench.system.kinematics(phase, y.data(), first);
     bench.system.kinematics(phase + 1000, y.data(), later);
@@ -298,12 +299,12 @@ TEST(TransmissionErrorIdentities, MarchedCyclesDoNotWindUp) {
   ASSERT_TRUE(point.settled);
   MarchState y = resume<MarchState>(bench, point);
   const MarchScales scales = march_scales(bench.system, point.mean_pinion_speed);
-  const double start = y[kWinding];
+  const double start = y[kMeshApproach];
   SolverWork work;
   constexpr int kCycles = kShortRun ? 20 : 1000;
   for (int i = 0; i < kCycles; ++i) march_mesh_cycle(bench.system, scales, {}, y, work);
   // The speed may drift with the torque's last digits, the flanks may not part from each other.
-  EXPECT_NEAR(y[kWinding], start, 1e-3 * scales.length);
+  EXPECT_NEAR(y[kMeshApproach], start, 1e-3 * scales.length);
 }
 
 /// Work of one march by term [J].

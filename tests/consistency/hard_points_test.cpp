@@ -547,7 +547,7 @@ WildPlace wild_place(std::mt19937_64& random, double inertia_factor = 5, double 
   return place;
 }
 
-// Extrapolation once led to a winding of half a metre there, whence no step succeeds.
+// Extrapolation once led to a mesh approach of half a metre there, whence no step succeeds.
 TEST(HardPoints, InertiasAThousandTimesOffAreMarchedToAnAnswer) {
   std::mt19937_64 random(5);
   for (int i = 0; i <= 252; ++i) {

@@ -60,15 +60,15 @@ Loss plain_quasi_static(const Scene& scene, double kilometres_per_hour) {
       const double phase =
           (interval + 0.5 + (i % 2 == 0 ? -0.5 : 0.5) / std::sqrt(3.0)) / mesh.intervals();
       const double theta = 2 * std::numbers::pi * phase;
-      // R_g at the angle where the gear is: behind by the winding.
-      double winding = 0;
+      // R_g at the angle where the gear is: behind by the mesh approach.
+      double approach = 0;
       MeshFunctions f{};
       double force = 0;
       for (int j = 0; j < 6; ++j) {
         f = mesh.functions(theta,
-                           theta - mesh.gear_teeth() / mesh.mean_gear_contact_radius() * winding);
+                           theta - mesh.gear_teeth() / mesh.mean_gear_contact_radius() * approach);
         force = (out.pinion_torque + friction_torque[i]) / f.pinion_contact_radius;
-        winding = force / f.mesh_stiffness + f.static_transmission_error - f.radius_integral;
+        approach = force / f.mesh_stiffness + f.static_transmission_error - f.radius_integral;
       }
       const double gear_speed = (f.pinion_contact_radius - f.static_transmission_error_slope) *
                                 speed / f.gear_contact_radius;
@@ -211,13 +211,13 @@ struct Oscillator {
     damping = 0.5 * d.mesh_damping * per_mass / natural;
   }
 
-  /// Largest |of x| when a winding of 1 um is imposed, `order` times a mesh cycle.
+  /// Largest |of x| when a mesh approach of 1 um is imposed, `order` times a mesh cycle.
   double answer(double frequency_ratio, int order) const {
     constexpr int kPhases = 48;
     ImposedMotion motion;
     motion.resize(kPhases);
     for (int n = 0; n < kPhases; ++n) {
-      motion.winding[n] = 1e-6 * std::cos(2 * std::numbers::pi * order * n / kPhases);
+      motion.mesh_approach[n] = 1e-6 * std::cos(2 * std::numbers::pi * order * n / kPhases);
       motion.mesh_stiffness[n] = system->mesh().mean_mesh_stiffness();
     }
     const double speed = frequency_ratio * natural / (order * system->mesh().pinion_teeth());

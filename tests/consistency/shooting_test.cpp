@@ -1,4 +1,4 @@
-// Periodic responses by shooting under lagged friction, held against the event-exact march, which
+// Periodic responses by shooting under frozen friction, held against the event-exact march, which
 // shares the equations and the contacts with it but neither steps nor the way to the steady state.
 #include <gtest/gtest.h>
 

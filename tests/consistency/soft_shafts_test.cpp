@@ -49,9 +49,9 @@ struct SeriesAt {
 /// of the test's own; contacts by the reference kernel, one by one.
 class TwoRotors {
  public:
-  enum { kPinionAngle, kPinionSpeed, kWinding, kGearSpeed, kLoss, kLossSquared, kSize };
+  enum { kPinionAngle, kPinionSpeed, kMeshApproach, kGearSpeed, kLoss, kLossSquared, kSize };
   using State = std::array<double, kSize>;
-  static constexpr double kLength = 1e-5;  // unit of the winding [m]
+  static constexpr double kLength = 1e-5;  // unit of the mesh approach [m]
 
   TwoRotors(const Scene& scene, const PointResult& r)
       : scene_(scene),
@@ -63,15 +63,15 @@ class TwoRotors {
 
   /// x by eq 6 in closed form.
   double transmission_error(const State& y) const { return at(y).x; }
-  /// The winding that belongs to x + e at the section.
-  double winding_of(double mesh_deflection) const {
-    double winding = 0;
+  /// The mesh approach that belongs to x + e at the section.
+  double approach_of(double mesh_deflection) const {
+    double approach = 0;
     for (int i = 0; i < 60; ++i) {
       State y{};
-      y[kWinding] = winding / kLength;
-      winding += mesh_deflection - at(y).x - at(y).e;
+      y[kMeshApproach] = approach / kLength;
+      approach += mesh_deflection - at(y).x - at(y).e;
     }
-    return winding;
+    return approach;
   }
 
   void operator()(const State& y, State& dy, double) const {
@@ -104,7 +104,7 @@ class TwoRotors {
     dy[kPinionAngle] = y[kPinionSpeed];
     dy[kPinionSpeed] =
         (torque_ - p.pinion_radius * force + pinion_friction) / set.dynamics.pinion_inertia;
-    dy[kWinding] =
+    dy[kMeshApproach] =
         (p.mean_pinion_radius * y[kPinionSpeed] - p.mean_gear_radius * y[kGearSpeed]) / kLength;
     dy[kGearSpeed] =
         (p.gear_radius * force - wheel_torque_ + gear_friction) / set.dynamics.gear_inertia;
@@ -119,11 +119,11 @@ class TwoRotors {
   };
   Place at(const State& y) const {
     const GearSet& set = scene_.gear_set;
-    const double winding = y[kWinding] * kLength;
+    const double approach = y[kMeshApproach] * kLength;
     const double mean_pinion = set.series.pinion_contact_radius.mean;
     const double mean_gear = mean_pinion * set.gear_teeth / set.pinion_teeth;
     const double theta_p = set.pinion_teeth * y[kPinionAngle];
-    const double theta_g = theta_p - set.gear_teeth * winding / mean_gear;
+    const double theta_g = theta_p - set.gear_teeth * approach / mean_gear;
     const SeriesAt pinion(set.series.pinion_contact_radius, theta_p, set.pinion_teeth);
     FourierSeries gear_series = set.series.gear_contact_radius;
     gear_series.mean = mean_gear;
@@ -137,7 +137,7 @@ class TwoRotors {
             k.value,
             e.value,
             e.slope,
-            set.dynamics.half_backlash + winding + pinion.integral - gear.integral - e.value};
+            set.dynamics.half_backlash + approach + pinion.integral - gear.integral - e.value};
   }
 
   const Scene& scene_;
@@ -163,7 +163,8 @@ TEST_P(SoftShafts, GiveTheFiguresOfConstantTorquesOnTheGears) {
   TwoRotors::State y{};
   y[TwoRotors::kPinionSpeed] = r.section_state.pinion_speed;
   y[TwoRotors::kGearSpeed] = r.section_state.gear_speed;
-  y[TwoRotors::kWinding] = rotors.winding_of(r.section_state.mesh_deflection) / TwoRotors::kLength;
+  y[TwoRotors::kMeshApproach] =
+      rotors.approach_of(r.section_state.mesh_deflection) / TwoRotors::kLength;
   const TwoRotors::State start = y;
   const double angle = 2 * std::numbers::pi / scene.gear_set.pinion_teeth;
   const double duration = angle / r.mean_pinion_speed;
@@ -178,7 +179,7 @@ TEST_P(SoftShafts, GiveTheFiguresOfConstantTorquesOnTheGears) {
   EXPECT_NEAR(y[TwoRotors::kPinionAngle], angle, 1e-7 * angle);
   EXPECT_NEAR(y[TwoRotors::kPinionSpeed], start[TwoRotors::kPinionSpeed], 1e-4);
   EXPECT_NEAR(y[TwoRotors::kGearSpeed], start[TwoRotors::kGearSpeed], 1e-4);
-  EXPECT_NEAR(y[TwoRotors::kWinding], start[TwoRotors::kWinding], 1e-3);
+  EXPECT_NEAR(y[TwoRotors::kMeshApproach], start[TwoRotors::kMeshApproach], 1e-3);
   const double input = r.pinion_torque * angle;
   EXPECT_NEAR(100 * y[TwoRotors::kLoss] / input / r.inefficiency_energy_mean.value(), 1, 5e-5);
   EXPECT_NEAR(100 * std::sqrt(y[TwoRotors::kLossSquared] / duration) / r.pinion_torque /

@@ -60,12 +60,12 @@ struct PointBench {
                         InstructionSet::kPortable);
     MarchState y = start;
     marched = march.run(friction, true, y, &sensitivity, &pieces);
-    for (Columns* columns : {&lagged.start, &lagged.middle}) {
+    for (Columns* columns : {&frozen.start, &frozen.middle}) {
       columns->resize(kFrictionRows, steps + 1);
     }
     for (int n = 0; n <= 2 * steps; ++n) {
       const FrictionArms at = friction.at(0.5 * n / steps);
-      Columns& to = n % 2 == 0 ? lagged.start : lagged.middle;
+      Columns& to = n % 2 == 0 ? frozen.start : frozen.middle;
       to[kPinionFrictionRow][n / 2] = at.pinion;
       to[kGearFrictionRow][n / 2] = at.gear;
     }
@@ -82,7 +82,7 @@ struct PointBench {
     if (c.change) c.change(scene);
     return scene;
   }
-  StepBlock block() const { return {system, grid, system.regime.side, solve_wheel_torque, lagged}; }
+  StepBlock block() const { return {system, grid, system.regime.side, solve_wheel_torque, frozen}; }
   double scale(int component) const { return march_scales(system, kSpeed).of(mesh, component); }
 
   Scene scene;
@@ -96,7 +96,7 @@ struct PointBench {
   Sensitivity sensitivity;
   std::vector<OrbitPiece> pieces;
   bool marched;
-  CycleFriction lagged;
+  CycleFriction frozen;
   CycleResponse response;
 };
 
@@ -110,7 +110,7 @@ TEST_P(StepsSideBySide, LeadWhereEachLeadsAlone) {
     for (const InstructionSet set : supported_instruction_sets()) {
       SCOPED_TRACE(FlankContactBatch::name(set));
       Columns end(kWheelSpeed + 1, steps);
-      ASSERT_TRUE(take_steps(set, bench.block(), bench.response, end, nullptr));
+      ASSERT_TRUE(rk4_steps(set, bench.block(), bench.response, end, nullptr));
       for (int s = 0; s < steps; ++s) {
         const OrbitPiece& piece = bench.pieces[s];
         EXPECT_NEAR(end[kTime][s], piece.end[kTime] - piece.start[kTime], 1e-13 * piece.end[kTime]);
@@ -131,9 +131,9 @@ TEST_P(StepsSideBySide, HaveTheDerivativesOfTheWholeMarch) {
       SCOPED_TRACE(FlankContactBatch::name(set));
       Columns end(kWheelSpeed + 1, kSteps);
       Columns derivatives(CycleDerivatives::kMatrix, kSteps);
-      ASSERT_TRUE(take_steps(set, bench.block(), bench.response, end, &derivatives));
+      ASSERT_TRUE(rk4_steps(set, bench.block(), bench.response, end, &derivatives));
       CycleDerivatives composed(kSteps);
-      compose_steps(set, derivatives, composed);
+      compose_derivatives(set, derivatives, composed);
       const double* const whole = composed.from_section.get() + CycleDerivatives::kMatrix * kSteps;
       for (int j = 0; j < kStepUnknowns; ++j) {
         // By components' sizes: their derivatives have many units.
@@ -164,7 +164,7 @@ TEST_P(StepsSideBySide, KnowForcesMiddlesAndWhatContactsSee) {
   for (const InstructionSet set : supported_instruction_sets()) {
     SCOPED_TRACE(FlankContactBatch::name(set));
     CycleResponse filled = bench.response;
-    ASSERT_TRUE(fill_response(set, bench.block(), filled));
+    ASSERT_TRUE(complete_midpoints(set, bench.block(), filled));
     for (int node = 0; node <= 2 * kSteps; ++node) {
       Columns& at = node % 2 == 0 ? filled.start : filled.middle;
       const int lane = node / 2;
@@ -186,8 +186,8 @@ TEST_P(StepsSideBySide, KnowForcesMiddlesAndWhatContactsSee) {
     }
     for (const GridContacts* contacts :
          {&bench.grid.contacts(), &bench.grid.contacts_at_starts()}) {
-      Columns seen(kSeenRows, contacts->node.size());
-      see_contacts(set, bench.block(), *contacts, filled, seen);
+      Columns seen(kGatheredRows, contacts->node.size());
+      gather_contact_conditions(set, bench.block(), *contacts, filled, seen);
       for (int place = 0, node = 0; node <= 2 * kSteps; ++place, node += contacts->stride) {
         const Columns& at = node % 2 == 0 ? filled.start : filled.middle;
         MarchState y{};
@@ -198,14 +198,14 @@ TEST_P(StepsSideBySide, KnowForcesMiddlesAndWhatContactsSee) {
           const double load = flank.load_share * system.regime.load(at[kMeshForceRow][node / 2]);
           FlankMotion motion;
           const ContactConditions c = system.contact_conditions(flank, load, y.data(), motion);
-          EXPECT_NEAR(seen[kSeenLoad][n], c.load, 1e-12 * (c.load + 1));
-          EXPECT_NEAR(seen[kSeenPinionX][n], c.velocity_1_x, 1e-12);
-          EXPECT_NEAR(seen[kSeenPinionY][n], c.velocity_1_y, 1e-12);
-          EXPECT_NEAR(seen[kSeenGearX][n], c.velocity_2_x, 1e-12);
-          EXPECT_NEAR(seen[kSeenGearY][n], c.velocity_2_y, 1e-12);
-          EXPECT_NEAR(seen[kSeenSlidingSpeed][n], motion.sliding_speed, 1e-12);
-          EXPECT_NEAR(seen[kSeenPinionArm][n], motion.pinion_friction_arm, 1e-12);
-          EXPECT_NEAR(seen[kSeenGearArm][n], motion.gear_friction_arm, 1e-12);
+          EXPECT_NEAR(seen[kGatheredLoad][n], c.load, 1e-12 * (c.load + 1));
+          EXPECT_NEAR(seen[kGatheredPinionX][n], c.velocity_1_x, 1e-12);
+          EXPECT_NEAR(seen[kGatheredPinionY][n], c.velocity_1_y, 1e-12);
+          EXPECT_NEAR(seen[kGatheredGearX][n], c.velocity_2_x, 1e-12);
+          EXPECT_NEAR(seen[kGatheredGearY][n], c.velocity_2_y, 1e-12);
+          EXPECT_NEAR(seen[kGatheredSlidingSpeed][n], motion.sliding_speed, 1e-12);
+          EXPECT_NEAR(seen[kGatheredPinionArm][n], motion.pinion_friction_arm, 1e-12);
+          EXPECT_NEAR(seen[kGatheredGearArm][n], motion.gear_friction_arm, 1e-12);
           ++n;
         }
         EXPECT_EQ(n, contacts->first[place + 1]);
@@ -223,13 +223,13 @@ TEST_P(StepsSideBySide, AreGivenUpWhereTheyMeanNothing) {
     const auto is_refused = [&](int component, double value) {
       CycleResponse wild = bench.response;
       wild.start[component][kSteps - 1] = value;
-      return !take_steps(set, bench.block(), wild, end, nullptr);
+      return !rk4_steps(set, bench.block(), wild, end, nullptr);
     };
     EXPECT_TRUE(is_refused(kPinionSpeed, 0));
     EXPECT_TRUE(is_refused(kPinionSpeed, -100));
-    EXPECT_TRUE(is_refused(kWinding, 1));  // far beyond the series
+    EXPECT_TRUE(is_refused(kMeshApproach, 1));  // far beyond the series
     EXPECT_TRUE(is_refused(kGearSpeed, std::nan("")));
-    EXPECT_FALSE(is_refused(kWinding, bench.response.start[kWinding][0]));
+    EXPECT_FALSE(is_refused(kMeshApproach, bench.response.start[kMeshApproach][0]));
   }
 }
 
@@ -242,16 +242,16 @@ struct Given {
         composed(steps),
         filled(bench.response),
         particular(kStepUnknowns * (steps + 1)),
-        seen(kSeenRows, bench.grid.contacts().node.size()) {
-    EXPECT_TRUE(take_steps(set, bench.block(), bench.response, end, &derivatives));
-    compose_steps(set, derivatives, composed);
-    EXPECT_TRUE(fill_response(set, bench.block(), filled));
-    follow_residuals(set, composed, bench.response, end, particular.data());
+        seen(kGatheredRows, bench.grid.contacts().node.size()) {
+    EXPECT_TRUE(rk4_steps(set, bench.block(), bench.response, end, &derivatives));
+    compose_derivatives(set, derivatives, composed);
+    EXPECT_TRUE(complete_midpoints(set, bench.block(), filled));
+    condense_residuals(set, composed, bench.response, end, particular.data());
     // Of the states, then of the torque.
     constexpr double kSection[] = {1e-6, -2e-7, 3e-6, 0.1, -0.2, 0.05, 0.03, 0.5};
     constexpr double kPerScale[] = {1e5, 1e6, 1e5, 10, 10, 30, 30, 0};
-    longest = add_section_change(set, composed, kSection, kPerScale, particular.data());
-    see_contacts(set, bench.block(), bench.grid.contacts(), filled, seen);
+    longest = expand_section_update(set, composed, kSection, kPerScale, particular.data());
+    gather_contact_conditions(set, bench.block(), bench.grid.contacts(), filled, seen);
   }
 
   int steps;
@@ -299,7 +299,8 @@ TEST_P(StepsSideBySide, AreTheSameBitsInEveryWidthWithFusedMultiplyAdds) {
     EXPECT_TRUE(same_bits(narrow.filled.start, wide.filled.start, kResponseRows, count + 1));
     EXPECT_TRUE(same_bits(narrow.filled.middle, wide.filled.middle, kResponseRows, count));
     EXPECT_TRUE(same_bits(narrow.filled.rate, wide.filled.rate, kWheelSpeed + 1, count + 1));
-    EXPECT_TRUE(same_bits(narrow.seen, wide.seen, kSeenRows, bench.grid.contacts().node.size()));
+    EXPECT_TRUE(
+        same_bits(narrow.seen, wide.seen, kGatheredRows, bench.grid.contacts().node.size()));
   }
 }
 
@@ -327,15 +328,15 @@ TEST_P(StepsSideBySide, DoNotKnowTheirNeighbours) {
   for (const InstructionSet set : supported_instruction_sets()) {
     SCOPED_TRACE(FlankContactBatch::name(set));
     Columns end(kWheelSpeed + 1, kSteps), end_in_company(kWheelSpeed + 1, kSteps);
-    ASSERT_TRUE(take_steps(set, bench.block(), bench.response, end, nullptr));
+    ASSERT_TRUE(rk4_steps(set, bench.block(), bench.response, end, nullptr));
     for (const int kept : {0, 3, 7, 8, kSteps - 1}) {
       CycleResponse company = bench.response;
       for (int s = 0; s < kSteps; ++s) {
         if (s == kept) continue;
         company.start[kPinionSpeed][s] *= 1.5;
-        company.start[kWinding][s] *= 0.5;
+        company.start[kMeshApproach][s] *= 0.5;
       }
-      take_steps(set, bench.block(), company, end_in_company, nullptr);
+      rk4_steps(set, bench.block(), company, end_in_company, nullptr);
       for (int i = kTime; i <= kWheelSpeed; ++i) {
         EXPECT_TRUE(same_bits(end[i] + kept, end_in_company[i] + kept, 1)) << i << ' ' << kept;
       }
