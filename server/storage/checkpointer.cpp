@@ -43,6 +43,7 @@ int Checkpointer::after_commit(void* self, sqlite3* writer, const char* schema, 
   if (pages < checkpointer.last_pages_) checkpointer.next_pages_ = kPages;  // the log began anew
   checkpointer.last_pages_ = pages;
   if (pages >= kMostPages) {
+    const std::lock_guard no_copy(checkpointer.copy_mutex_);
     checkpoint(writer, schema);
   } else if (pages >= checkpointer.next_pages_) {
     checkpointer.next_pages_ = pages + kPages;
@@ -62,7 +63,10 @@ void Checkpointer::run() {
     if (is_ending_) return;
     is_wanted_ = false;
     lock.unlock();
-    for (int i = 0; i < kCopies; ++i) checkpoint(connection_.getHandle(), "main");
+    {
+      const std::lock_guard copy(copy_mutex_);
+      for (int i = 0; i < kCopies; ++i) checkpoint(connection_.getHandle(), "main");
+    }
     lock.lock();
   }
 }

@@ -23,7 +23,7 @@ class Checkpointer {
   /// idle server with 1000 pages (49 ms by SQLite itself), 32 ms with 250 and 31 ms with 100 (two
   /// cores, means of four and more runs).
   static constexpr int kPages = 250;
-  /// Length of the log from which on a commit copies what the thread has not copied yet, so that
+  /// Length of the log from which on a commit waits for the thread and copies what is left, so that
   /// the log stays bounded while commits follow one another without a pause [pages].
   static constexpr int kMostPages = 4000;
 
@@ -42,6 +42,7 @@ class Checkpointer {
   Connection connection_;
   int last_pages_ = 0;       // of the log after the latest commit; used by commits alone
   int next_pages_ = kPages;  // at which the next copy begins; likewise
+  std::mutex copy_mutex_;    // of a checkpoint: SQLite refuses a second one meanwhile
   std::mutex mutex_;
   std::condition_variable changed_;
   bool is_wanted_ = false;  // guarded by mutex_
