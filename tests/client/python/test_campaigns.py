@@ -12,6 +12,8 @@ import pytest
 import tribodyn
 from test_connection import InThread, wait_until
 from tribodyn import aio
+from tribodyn._columns import read_columns
+from tribodyn.v1.campaigns_pb2 import ReadCampaignRequest
 
 FLUID = "paper-fluid-1"
 FIGURE = "inefficiency_energy_mean_percent"
@@ -86,6 +88,41 @@ def test_a_campaign_has_contact_figures_and_elasticities_on_request(client):
     assert points["elasticities_one_sided"].dtype == bool
     only = campaign.frame(["elasticity.film_ratio_mean.lubricant.relaxation_time_seconds"])
     assert len(only) == 4
+
+
+def test_the_client_has_the_columns_that_the_server_keeps(client):
+    """Those of a campaign of the axle with all that it may have, and those of one of a rig."""
+    table = variants(2).drop(columns="surface.asperity_friction_coefficient")
+    rig = tribodyn.Rig("12.7mm", entrainment_speeds_metres_per_second=2, loads_newtons=35)
+    of_axle = client.screen(
+        table, FLUID, contact_figures=True, elasticities=["lubricant.relaxation_time_seconds"]
+    )
+    for campaign in (of_axle, client.screen(table, FLUID, rig=rig)):
+        campaign.wait()
+        names = list(campaign.frame())
+        kept = asyncio.run(kept_columns(client.server, campaign.name))
+        assert kept[0] == "refusal_number" and names[-2:] == ["status", "status_message"]
+        assert names[names.index(kept[1]) : -2] == kept[1:]
+
+
+def test_cells_of_a_surface_are_all_stated_if_a_rig_has_smooth_specimens(client):
+    rig = tribodyn.Rig("12.7mm", entrainment_speeds_metres_per_second=2, loads_newtons=35)
+    with pytest.raises(tribodyn.TribodynError) as caught:
+        client.screen(variants(2), FLUID, rig=rig)  # the last row has no friction coefficient
+    (violation,) = caught.value.violations
+    assert violation.field == "surface.asperity_friction_coefficient"
+    assert violation.description == "is missing in some rows, and no surface is stated"
+
+
+async def kept_columns(server, campaign):
+    async with aio.Client(server) as client:
+        schema, _ = await read_columns(
+            client._transport,
+            "CampaignService",
+            "ReadCampaign",
+            ReadCampaignRequest(name=campaign),
+        )
+        return [each.name for each in schema.columns]
 
 
 def test_the_same_call_again_finds_its_campaign(client):

@@ -189,21 +189,60 @@ def test_settings_come_from_arguments_then_environment_then_file(monkeypatch, tm
         read_settings()
 
 
-def test_coroutines_have_the_names_and_arguments_of_the_blocking_client():
+def test_coroutines_have_the_names_arguments_and_descriptions_of_the_blocking_client():
+    from tribodyn._campaigns import AsyncCampaign
+    from tribodyn._resources import AsyncResources
+
+    def members(kind):
+        return {name: getattr(kind, name) for name in dir(kind) if not name.startswith("_")}
+
     def signatures(kind):
         return {
             name: list(inspect.signature(member).parameters.values())
-            for name, member in vars(kind).items()
-            if not name.startswith("_") and callable(member)
+            for name, member in members(kind).items()
+            if callable(member)
         }
 
-    assert signatures(aio.Client) == signatures(tribodyn.Client)
-    from tribodyn._resources import AsyncResources
+    for awaited, blocking in (
+        (aio.Client, tribodyn.Client),
+        (AsyncResources, tribodyn.Resources),
+        (AsyncCampaign, tribodyn.Campaign),
+    ):
+        assert len(signatures(blocking)) > 6
+        assert signatures(awaited) == signatures(blocking)
+        for name, member in members(blocking).items():
+            assert member.__doc__, name
+            assert not inspect.iscoroutinefunction(member), name
 
-    assert signatures(AsyncResources) == signatures(tribodyn.Resources)
-    from tribodyn._campaigns import AsyncCampaign
 
-    assert signatures(AsyncCampaign) == signatures(tribodyn.Campaign)
+def test_help_states_what_a_blocking_method_returns():
+    returned = {
+        name: inspect.signature(getattr(tribodyn.Client, name)).return_annotation
+        for name in ("point", "screen", "campaigns")
+    }
+    assert returned == {"point": "Frame", "screen": "Campaign", "campaigns": "List[Campaign]"}
+    assert inspect.signature(tribodyn.Campaign.follow).return_annotation == "Iterator[Frame]"
+
+
+def test_type_checkers_find_the_results_of_blocking_methods(tmp_path):
+    program = tmp_path / "program.py"
+    program.write_text(
+        "import tribodyn\n"
+        "client = tribodyn.Client()\n"
+        "reveal_type(client.campaigns(3))\n"
+        "reveal_type(client.campaign('12').name)\n"
+        "reveal_type(client.lubricants.get('my-oil').name)\n"
+        "client.point(speed='60')\n"
+    )
+    done = subprocess.run(
+        ["/usr/bin/mypy", "--python-executable", sys.executable, "--cache-dir", tmp_path, program],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+    )
+    assert '"builtins.list[tribodyn.client.Campaign]"' in done.stdout, done.stdout
+    assert done.stdout.count('"builtins.str"') == 2, done.stdout
+    assert 'Unexpected keyword argument "speed"' in done.stdout, done.stdout
 
 
 def test_coroutines_run_together(server):

@@ -10,7 +10,7 @@
 from tribodyn._candidates import Design, Lubricants, Rig
 from tribodyn._frames import Table
 from tribodyn._profiles import Profile
-from tribodyn._studies import Options
+from tribodyn._simulation_requests import Options
 from tribodyn.client import Campaign, Client, Resources
 from tribodyn.errors import TribodynError, Violation
 from tribodyn.units import Quantity, QuantityError, quantity

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Mapping, Sequence
 
-from tribodyn._evaluate import parameter_path, read_varied
-from tribodyn._maps import numbers
-from tribodyn._studies import Arguments, full_name
+from tribodyn._arguments import Arguments, full_name
+from tribodyn._parameters import parameter_path, read_parameters
 from tribodyn.units import Quantity
 from tribodyn.v1 import campaigns_pb2 as pb
 from tribodyn.v1.rigs_pb2 import RigBody
@@ -67,7 +66,7 @@ class Design:
         if not isinstance(limits, (tuple, list)) or len(limits) != 2:
             arguments.wrong("ranges", f"{name}: {limits!r} is not (lowest, highest)")
             return
-        ends = [read_varied(arguments, {name: limit}) for limit in limits]
+        ends = [read_parameters(arguments, {name: limit}) for limit in limits]
         if not all(ends):
             return
         levels = self.levels if isinstance(self.levels, int) else self.levels.get(name, 0)
@@ -124,4 +123,4 @@ class Rig:
         for each in rig.grid.DESCRIPTOR.fields:
             values = getattr(self, each.name)
             if values is not None:
-                getattr(rig.grid, each.name).extend(numbers(arguments, each.name, values))
+                getattr(rig.grid, each.name).extend(arguments.numbers(each.name, values))

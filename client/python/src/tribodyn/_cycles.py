@@ -6,10 +6,10 @@ from typing import Any, Mapping, Sequence
 
 import numpy as np
 
+from tribodyn._arguments import Arguments, full_name, full_names, set_switches
 from tribodyn._csv import rows_of
 from tribodyn._frames import Frame, enum_word, frame, in_columns
-from tribodyn._studies import Arguments, full_name, set_switches
-from tribodyn._transport import Transport
+from tribodyn._session import Session
 from tribodyn.units import Quantity
 from tribodyn.v1 import cycles_pb2 as pb
 
@@ -33,6 +33,76 @@ _PIECE_COLUMNS = (
 )
 
 
+class Cycles(Session):
+    """The method of a client for drive cycles."""
+
+    async def cycle(
+        self,
+        lubricants: str | Sequence[str],
+        *,
+        cycle: Any = "nedc",
+        sump_temperature_celsius: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        map_tolerance: float | None = None,
+        tolerance: float | None = None,
+        point_by_point: bool = False,
+        sheared: bool = False,
+        model_options: Mapping[str, Any] | None = None,
+    ) -> Frame:
+        """Returns what one to eight lubricants lose over a drive cycle: one row for each lubricant
+        and part of the cycle (all, standstill, drive and its phases, coast, ranges of speed).
+
+        ``cycle`` is "nedc", a CSV file or a table with the columns time_seconds,
+        speed_kilometres_per_hour (0 to 400) and, optionally, ascent_angle_degrees and
+        sump_temperature_celsius: 2 to 10,000 rows, at most 20,000 s. Points are quasi-steady, from an
+        adaptive map: ``map_tolerance`` (1e-5 to 0.1; None: 2e-3) is the wanted relative error of the
+        energy lost, or each piece of at most 1 s is solved, ``point_by_point``. ``attrs`` holds
+        ``whole``, the energies with their errors, and ``pieces``, speed, torque and loss over time.
+        A lubricant that the model refuses has NaN, and the reason in ``status``."""
+        arguments = Arguments()
+        request = pb.EvaluateCycleRequest(
+            lubricants=full_names("lubricants", lubricants),
+            gear_set=full_name("gearSets", gear_set or ""),
+            surface=full_name("surfaces", surface or ""),
+            vehicle=full_name("vehicles", vehicle or ""),
+            point_by_point=point_by_point,
+            sheared_lubricant=sheared,
+        )
+        arguments.set_numbers(
+            request,
+            {
+                "sump_temperature_celsius": sump_temperature_celsius,
+                "inlet_temperature_rise_kelvin": inlet_temperature_rise_kelvin,
+                "map_tolerance": map_tolerance,
+                "tolerance": tolerance,
+            },
+        )
+        _set_cycle(arguments, cycle, request)
+        set_switches(arguments, "model_options", model_options or {}, request.model_options)
+        arguments.check()
+        answer = await self._call("CycleService", "EvaluateCycle", request, patient=True)
+        rows = []
+        for lubricant in answer.lubricants:
+            for part, loss in zip(answer.parts, lubricant.parts or [None] * len(answer.parts)):
+                rows.append(
+                    {
+                        "lubricant": lubricant.lubricant_revision,
+                        "part": enum_word(pb.CyclePartKind.DESCRIPTOR, part.kind),
+                        "minimum_speed_kilometres_per_hour": part.minimum_speed_kilometres_per_hour,
+                        "maximum_speed_kilometres_per_hour": part.maximum_speed_kilometres_per_hour,
+                        "duration_seconds": part.duration_seconds,
+                        "distance_metres": part.distance_metres,
+                        **{name: getattr(loss, name) if loss else np.nan for name in _FIGURES},
+                        "status": lubricant.refusal_reason or "OK",
+                        "status_message": lubricant.refusal_message,
+                    }
+                )
+        return frame(in_columns(rows), _attrs(answer))
+
+
 def _set_cycle(arguments: Arguments, cycle: Any, request: pb.EvaluateCycleRequest) -> None:
     """Sets a cycle by its name, or the places of a table or CSV file."""
     if isinstance(cycle, str) and cycle.lower() == _NEDC:
@@ -49,54 +119,6 @@ def _set_cycle(arguments: Arguments, cycle: Any, request: pb.EvaluateCycleReques
                 setattr(place, name, arguments.number(f"places[{i}].{name}", value))
     for name in sorted(unknown):
         arguments.wrong("cycle", f"unknown column {name}; allowed: {', '.join(names)}")
-
-
-async def evaluated(
-    transport: Transport,
-    lubricants: str | Sequence[str],
-    *,
-    cycle: Any,
-    quantities: Mapping[str, Quantity | None],
-    hardware: Mapping[str, str | None],
-    point_by_point: bool,
-    sheared: bool,
-    model_options: Mapping[str, Any],
-) -> Frame:
-    """Returns one row for each lubricant and part of the cycle."""
-    arguments = Arguments()
-    named = [lubricants] if isinstance(lubricants, str) else lubricants
-    request = pb.EvaluateCycleRequest(
-        lubricants=[full_name("lubricants", each) for each in named],
-        gear_set=full_name("gearSets", hardware["gear_set"] or ""),
-        surface=full_name("surfaces", hardware["surface"] or ""),
-        vehicle=full_name("vehicles", hardware["vehicle"] or ""),
-        point_by_point=point_by_point,
-        sheared_lubricant=sheared,
-    )
-    for name, value in quantities.items():
-        if value is not None:
-            setattr(request, name, arguments.number(name, value))
-    _set_cycle(arguments, cycle, request)
-    set_switches(arguments, "model_options", model_options, request.model_options)
-    arguments.check()
-    answer = await transport.call("CycleService", "EvaluateCycle", request, patient=True)
-    rows = []
-    for lubricant in answer.lubricants:
-        for part, loss in zip(answer.parts, lubricant.parts or [None] * len(answer.parts)):
-            rows.append(
-                {
-                    "lubricant": lubricant.lubricant_revision,
-                    "part": enum_word(pb.CyclePartKind.DESCRIPTOR, part.kind),
-                    "minimum_speed_kilometres_per_hour": part.minimum_speed_kilometres_per_hour,
-                    "maximum_speed_kilometres_per_hour": part.maximum_speed_kilometres_per_hour,
-                    "duration_seconds": part.duration_seconds,
-                    "distance_metres": part.distance_metres,
-                    **{name: getattr(loss, name) if loss else np.nan for name in _FIGURES},
-                    "status": lubricant.refusal_reason or "OK",
-                    "status_message": lubricant.refusal_message,
-                }
-            )
-    return frame(in_columns(rows), _attrs(answer))
 
 
 def _attrs(answer: pb.EvaluateCycleResponse) -> dict[str, Any]:

@@ -5,10 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Awaitable, Callable, Mapping, Sequence
 
-from tribodyn import _studies
-from tribodyn._frames import empty_row, point_row
+from tribodyn import _simulation_requests as requests
+from tribodyn._arguments import Arguments
+from tribodyn._frames import Frame, empty_row, point_row
 from tribodyn._jobs import Outcome
-from tribodyn._studies import Arguments, Options
+from tribodyn._session import Session
+from tribodyn._simulation_requests import Options
+from tribodyn._table_rows import beside, rows_with
 from tribodyn._transport import new_request_id
 from tribodyn.errors import TribodynError
 from tribodyn.v1 import simulations_pb2 as pb
@@ -17,24 +20,46 @@ from tribodyn.v1 import simulations_pb2 as pb
 # to the last bit at a fraction of the cost of jobs. Several curves use several processors.
 _MOST_SPEEDS = 50
 
-SCENE = (
+_PARAMETERS = (
     "gear_set",
     "surface",
     "vehicle",
     "sump_temperature_celsius",
     "inlet_temperature_rise_kelvin",
     "tolerance",
-)
-CONDITION = (
     "speed_kilometres_per_hour",
     "acceleration_metres_per_second_squared",
     "ascent_angle_degrees",
     "pinion_torque_newton_metres",
     "pinion_speed_radians_per_second",
+    "model",
 )
-PARAMETERS = ("lubricant", *SCENE, *CONDITION, "model")
 
 RunAll = Callable[[Sequence[pb.CreateSimulationRequest]], Awaitable[Sequence[Outcome]]]
+
+
+class Points(Session):
+    """The method of a client for tables of points."""
+
+    async def points(
+        self, /, table: Any, *, options: Options = Options(), **parameters: Any
+    ) -> Frame:
+        """Returns the whole record of many operating points: rows in, rows out, in their order.
+
+        ``table`` is a DataFrame, a mapping of columns, a sequence of rows, or the path of a CSV
+        file. Its columns are the arguments of point(): lubricant, gear_set, surface, vehicle,
+        sump_temperature_celsius, speed_kilometres_per_hour and so on; ``parameters`` hold for the
+        rows that state none. Other columns ride along. The points are jobs, with the bits of
+        point(), solved in parallel. A row that fails has NaN, the reason in ``status`` and a
+        sentence in ``status_message``; the others have "OK". ``options.request_id`` is not used:
+        equal inputs are computed once anyway.
+        """
+        given, rows = rows_with(table, parameters, lambda name: name in ("lubricant", *_PARAMETERS))
+
+        async def run(jobs: Sequence[pb.CreateSimulationRequest]) -> Sequence[Outcome]:
+            return await self._run_jobs(jobs, "points")
+
+        return beside(table, given, await _solve_rows(rows, options, run), {})
 
 
 @dataclass
@@ -45,7 +70,7 @@ class _Job:
     rows: list[int]
 
 
-async def solve_rows(
+async def _solve_rows(
     rows: Sequence[Mapping[str, Any]], options: Options, run_all: RunAll
 ) -> list[dict[str, Any]]:
     """Returns the cells of each row: figures and status "OK", or NaN and the reason."""
@@ -78,15 +103,11 @@ def _point(row: Mapping[str, Any], options: Options) -> pb.Simulation:
     arguments = Arguments()
     if row.get("lubricant") is None:
         arguments.wrong("lubricant", "lubricant is missing")
-    simulation = _studies.scene(
-        arguments, row.get("lubricant") or "", options, **{name: row.get(name) for name in SCENE}
-    )
-    _studies.point(
+    simulation = requests.operating_point(
         arguments,
-        simulation,
+        row.get("lubricant") or "",
         options,
-        model=row.get("model"),
-        **{name: row.get(name) for name in CONDITION},
+        **{name: row.get(name) for name in _PARAMETERS},
     )
     arguments.check()
     return simulation
@@ -94,7 +115,7 @@ def _point(row: Mapping[str, Any], options: Options) -> pb.Simulation:
 
 def _request(simulation: pb.Simulation, options: Options) -> pb.CreateSimulationRequest:
     arguments = Arguments()
-    request = _studies.request(arguments, simulation, options)
+    request = requests.request(arguments, simulation, options)
     arguments.check()
     # The jobs of a table depend on all of its rows, so that the id of the options cannot name one.
     request.request_id = new_request_id()

@@ -8,9 +8,9 @@ from typing import Any, Sequence
 
 import numpy as np
 
+from tribodyn._arguments import Arguments
 from tribodyn._frames import Frame, enum_word, frame, in_columns
-from tribodyn._studies import Arguments
-from tribodyn._transport import Transport
+from tribodyn._session import Session
 from tribodyn.units import Quantity
 from tribodyn.v1 import profiles_pb2 as pb
 from tribodyn.v1 import surfaces_pb2
@@ -36,6 +36,58 @@ class Profile:
         return ("position_metres,height_metres\n" + "".join(lines)).encode()
 
 
+class Profiles(Session):
+    """The method of a client for measured profiles."""
+
+    async def roughness(
+        self,
+        profiles: Profile | str | Path | Sequence[Profile | str | Path],
+        *,
+        levelling: str | None = None,
+        short_wave_cut_off_metres: Quantity | None = None,
+        long_wave_cut_off_metres: Quantity | None = None,
+        eq46_square_root_of_sum: bool = False,
+        sampling_steps: Sequence[int] = (),
+    ) -> Frame:
+        """Returns the surface that measured profiles make, eqs 45 to 48, by the sampling interval: one
+        row for each, with the standard uncertainties that the spread of repeats makes.
+
+        ``profiles`` are Profile objects, or CSV files as texts, "pinion,axial,heel.csv"; repeats of a
+        member and direction are averaged. ``levelling``: "least-squares-line" or "mean"; the cut-offs
+        are those of a Gaussian filter (ISO 16610-21). ``sampling_steps``: every which height is taken;
+        empty: 1, 2, 3, 4, 6, 8, 12 and so on while 50 heights are left. ``attrs`` holds the
+        moments of each profile (``measurements``), of each member and direction (``groups``), and
+        ``warnings``."""
+        arguments = Arguments()
+        request = pb.EvaluateProfilesRequest(
+            eq46_square_root_of_sum=eq46_square_root_of_sum, sampling_steps=sampling_steps
+        )
+        listed = [profiles] if isinstance(profiles, (str, Path, Profile)) else profiles
+        for i, profile in enumerate(listed):
+            _add_profile(arguments, f"profiles[{i}]", profile, request.profiles.add())
+        if levelling is not None:
+            request.levelling = arguments.word(
+                "levelling", levelling, surfaces_pb2.Levelling, "LEVELLING_"
+            )
+        arguments.set_numbers(
+            request,
+            {
+                "short_wave_cut_off_metres": short_wave_cut_off_metres,
+                "long_wave_cut_off_metres": long_wave_cut_off_metres,
+            },
+        )
+        arguments.check()
+        answer = await self._call("ProfileService", "EvaluateProfiles", request)
+        attrs = {
+            "measurements": frame(
+                in_columns([_measurement(each) for each in answer.measurements]), {}
+            ),
+            "groups": frame(in_columns([_group(each) for each in answer.groups]), {}),
+            "warnings": {each.code: each.message for each in answer.warnings},
+        }
+        return frame(in_columns([_surface(each) for each in answer.surfaces]), attrs)
+
+
 def _add_profile(
     arguments: Arguments, name: str, profile: Profile | str | Path, out: Any
 ) -> None:
@@ -58,57 +110,19 @@ def _add_profile(
         )
 
 
-async def evaluated(
-    transport: Transport,
-    profiles: Profile | str | Path | Sequence[Profile | str | Path],
-    *,
-    levelling: str | None,
-    short_wave_cut_off_metres: Quantity | None,
-    long_wave_cut_off_metres: Quantity | None,
-    eq46_square_root_of_sum: bool,
-    sampling_steps: Sequence[int],
-) -> Frame:
-    """Returns one row for each sampling interval."""
-    arguments = Arguments()
-    request = pb.EvaluateProfilesRequest(
-        eq46_square_root_of_sum=eq46_square_root_of_sum, sampling_steps=sampling_steps
-    )
-    listed = [profiles] if isinstance(profiles, (str, Path, Profile)) else profiles
-    for i, profile in enumerate(listed):
-        _add_profile(arguments, f"profiles[{i}]", profile, request.profiles.add())
-    if levelling is not None:
-        request.levelling = arguments.word(
-            "levelling", levelling, surfaces_pb2.Levelling, "LEVELLING_"
-        )
-    cut_offs = {
-        "short_wave_cut_off_metres": short_wave_cut_off_metres,
-        "long_wave_cut_off_metres": long_wave_cut_off_metres,
-    }
-    for name, value in cut_offs.items():
-        if value is not None:
-            setattr(request, name, arguments.number(name, value))
-    arguments.check()
-    answer = await transport.call("ProfileService", "EvaluateProfiles", request)
+def _surface(of: Any) -> dict[str, Any]:
     parameters = [each.name for each in pb.ProfileRoughness.DESCRIPTOR.fields]
-    rows = []
-    for each in answer.surfaces:
-        row: dict[str, Any] = {
-            "sampling_step": each.sampling_step,
-            "spacing_metres": each.spacing_metres,
-        }
-        row.update({name: getattr(each.roughness, name) for name in parameters})
-        known = each.HasField("standard_uncertainty")
-        for name in parameters:
-            uncertainty = getattr(each.standard_uncertainty, name) if known else np.nan
-            row[f"standard_uncertainty.{name}"] = uncertainty
-        row["wave_length_ratio"] = each.wave_length_ratio
-        rows.append(row)
-    attrs = {
-        "measurements": frame(in_columns([_measurement(each) for each in answer.measurements]), {}),
-        "groups": frame(in_columns([_group(each) for each in answer.groups]), {}),
-        "warnings": {each.code: each.message for each in answer.warnings},
+    out: dict[str, Any] = {
+        "sampling_step": of.sampling_step,
+        "spacing_metres": of.spacing_metres,
     }
-    return frame(in_columns(rows), attrs)
+    out.update({name: getattr(of.roughness, name) for name in parameters})
+    known = of.HasField("standard_uncertainty")
+    for name in parameters:
+        uncertainty = getattr(of.standard_uncertainty, name) if known else np.nan
+        out[f"standard_uncertainty.{name}"] = uncertainty
+    out["wave_length_ratio"] = of.wave_length_ratio
+    return out
 
 
 def _flank(of: Any) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from google.protobuf.message import Message
 from tribodyn._csv import rows_of
 from tribodyn._frames import Frame, enum_word, frame, in_columns
 from tribodyn._rows import fill, find_column, unknown
-from tribodyn._studies import full_name
+from tribodyn._arguments import full_name
 from tribodyn._transport import Transport
 from tribodyn.errors import TribodynError, Violation, invalid_fields
 from tribodyn.v1 import gear_sets_pb2, lubricants_pb2, surfaces_pb2, vehicles_pb2

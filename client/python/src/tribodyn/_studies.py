@@ -1,263 +1,343 @@
-"""Arguments of studies as requests. All wrong arguments are reported together."""
+"""Studies that are jobs of the server: points, curves, histories and sensitivities."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import Any, Mapping, Sequence
 
-from tribodyn._transport import new_request_id
-from tribodyn.errors import Violation, invalid_fields
-from tribodyn.units import Quantity, QuantityError, quantity
-from tribodyn.v1 import results_pb2
+from tribodyn import _simulation_requests as requests
+from tribodyn._arguments import Arguments, full_name
+from tribodyn._columns import read_columns
+from tribodyn._frames import (
+    Frame,
+    frame,
+    in_columns,
+    point_row,
+    result_attrs,
+    sensitivity_table,
+)
+from tribodyn._session import Session
+from tribodyn._simulation_requests import Options
+from tribodyn.errors import TribodynError
+from tribodyn.units import Quantity
 from tribodyn.v1 import simulations_pb2 as pb
 
-# Speeds of the paper's curves [km/h].
-DEFAULT_SPEEDS = tuple(range(20, 145, 5))
 
+class Studies(Session):
+    """Methods of a client for one lubricant, or for a few at the same conditions."""
 
-@dataclass(frozen=True)
-class Options:
-    """What few studies state: how they are solved, and the job."""
+    async def point(
+        self,
+        lubricant: str,
+        *,
+        speed_kilometres_per_hour: Quantity | None = None,
+        acceleration_metres_per_second_squared: Quantity | None = None,
+        ascent_angle_degrees: Quantity | None = None,
+        pinion_torque_newton_metres: Quantity | None = None,
+        pinion_speed_radians_per_second: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        sump_temperature_celsius: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        tolerance: float | None = None,
+        model: str | None = None,
+        options: Options = Options(),
+    ) -> Frame:
+        """Returns the figures of one operating point: a table of one row.
 
-    #: what the model includes: fields of ModelOptions, e.g. {"isothermal": True}, and of
-    #: AsPublished below "as_published"
-    model_options: Mapping[str, Any] = field(default_factory=dict)
-    #: where the search for a steady state starts: "quasi-static-equilibrium" or "large-vibration"
-    start: str | None = None
-    #: how the steady state is found: "automatic", "shooting" or "march"
-    method: str | None = None
-    march_step_tolerance: float | None = None  #: of each step of a march, 1e-11 to 1e-3; None: 1e-7
-    march_settling_tolerance: float | None = (
-        None  #: of a marched response, 1e-12 to 0.1; None: 1e-6
-    )
-    maximum_mesh_cycles: int | None = None  #: longest march, 1 to 100,000; None: 4000
-    recorded_mesh_cycles: int | None = None  #: record without a period, 1 to 1000; None: 50
-    display_name: str = ""  #: title of the job
-    labels: Mapping[str, str] = field(default_factory=dict)  #: labels of the job
-    force: bool = False  #: computes although equal inputs have a result
-    #: "interactive": before all other jobs of this client; "bulk": after small ones; None: by cost
-    scheduling_class: str | None = None
-    deadline_seconds: float | None = None  #: a job that has not ended by then fails
-    #: of the job, or with "/0", "/1", ... of each of several. A program that was interrupted and
-    #: runs again with the same one finds its jobs. None: random. At most 90 characters.
-    request_id: str | None = None
+        The point is a speed (0.1 to 400 km/h), with an acceleration (-50 to 50 m/s2) and an ascent
+        (-45 to 45 degrees, or "6%"), or a torque of the pinion (-1e5 to 1e5 N m; negative: coast)
+        with its speed (0.01 to 1e4 rad/s). ``sump_temperature_celsius``: -70 to 200, None: 40;
+        ``inlet_temperature_rise_kelvin`` (eq 14): 0 to 300, None: 20. ``tolerance``: wanted
+        relative error of inefficiencies, torque and transmission error, 1e-8 to 0.01, None: 1e-3.
+        ``model``: "automatic" (the cheapest within the tolerance), "full" or "quasi-static".
 
+        Columns are the fields of PointResult, with units in their names; a figure that is not there
+        is NaN. ``attrs`` holds input_hash, model_version, platform, estimated_relative_error,
+        warnings, input_warnings, the revisions used and the name of the simulation.
+        """
+        arguments = Arguments()
+        simulation = requests.operating_point(
+            arguments,
+            lubricant,
+            options,
+            speed_kilometres_per_hour=speed_kilometres_per_hour,
+            acceleration_metres_per_second_squared=acceleration_metres_per_second_squared,
+            ascent_angle_degrees=ascent_angle_degrees,
+            pinion_torque_newton_metres=pinion_torque_newton_metres,
+            pinion_speed_radians_per_second=pinion_speed_radians_per_second,
+            gear_set=gear_set,
+            surface=surface,
+            vehicle=vehicle,
+            sump_temperature_celsius=sump_temperature_celsius,
+            inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+            tolerance=tolerance,
+            model=model,
+        )
+        (found,) = await self._solve(arguments, [simulation], options, "point")
+        return frame(_columns(found), result_attrs(found))
 
-class Arguments:
-    """Reads arguments and collects what is wrong with them."""
+    async def sensitivities(
+        self,
+        lubricant: str,
+        *,
+        speed_kilometres_per_hour: Quantity | None = None,
+        acceleration_metres_per_second_squared: Quantity | None = None,
+        ascent_angle_degrees: Quantity | None = None,
+        pinion_torque_newton_metres: Quantity | None = None,
+        pinion_speed_radians_per_second: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        sump_temperature_celsius: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        tolerance: float | None = None,
+        options: Options = Options(),
+    ) -> Frame:
+        """Returns the derivatives of the figures of an operating point by every scalar parameter of
+        oil, surface, gear set and conditions, exact to rounding on the grid of the solution: a table
+        of one row a parameter, for loops of optimisation and budgets of uncertainty.
 
-    def __init__(self) -> None:
-        self.violations: list[Violation] = []
+        Arguments as of point(). Columns: ``parameter``, e.g. "lubricant.relaxation_time" or
+        "vehicle_speed"; ``unit`` (SI, temperatures in K); ``value``; for each figure
+        "derivative.FIGURE", the unit of the figure over that of the parameter, and
+        "elasticity.FIGURE", relative change over relative change. ``attrs``, besides those of
+        point(), holds ``figures``, the values of the figures by their names, e.g. "film_ratio.mean",
+        and ``one_sided``: the response is at the edge of an event, so that the derivatives hold on
+        one side. Costs 16 to 28 times the point. The table is empty at a fold.
+        """
+        arguments = Arguments()
+        simulation = requests.operating_point(
+            arguments,
+            lubricant,
+            options,
+            speed_kilometres_per_hour=speed_kilometres_per_hour,
+            acceleration_metres_per_second_squared=acceleration_metres_per_second_squared,
+            ascent_angle_degrees=ascent_angle_degrees,
+            pinion_torque_newton_metres=pinion_torque_newton_metres,
+            pinion_speed_radians_per_second=pinion_speed_radians_per_second,
+            gear_set=gear_set,
+            surface=surface,
+            vehicle=vehicle,
+            sump_temperature_celsius=sump_temperature_celsius,
+            inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+            tolerance=tolerance,
+        )
+        simulation.operating_point.sensitivities = True
+        (found,) = await self._solve(arguments, [simulation], options, "sensitivities")
+        columns, attrs = sensitivity_table(found)
+        return frame(columns, attrs)
 
-    def number(self, name: str, value: Quantity) -> float:
-        try:
-            return quantity(value, name)
-        except QuantityError as error:
-            self.violations.append(Violation(name, f"{value!r} {error}", repr(value)))
-            return float("nan")
+    async def curve(
+        self,
+        lubricant: str,
+        *,
+        speeds_kilometres_per_hour: Sequence[Quantity] | None = None,
+        direction: str | None = None,
+        independent_points: bool = False,
+        ascent_angle_degrees: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        sump_temperature_celsius: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        tolerance: float | None = None,
+        model: str | None = None,
+        options: Options = Options(),
+    ) -> Frame:
+        """Returns the figures at each speed, in ascending order: a table of one row a speed.
 
-    def word(self, name: str, value: str, kind: Any, prefix: str) -> Any:
-        """Returns the number of an enum's value for a word such as "quasi-static"."""
-        words = {
-            each.name.removeprefix(prefix).lower().replace("_", "-"): each.number
-            for each in kind.DESCRIPTOR.values
-            if each.number
+        ``speeds_kilometres_per_hour``: up to 1000 speeds; None: 20 to 140 km/h by 5. Each point
+        starts from the steady state of the one before, ``direction`` "up" or "down";
+        ``independent_points``: each is solved alone, in about a third of the time. A speed without
+        a result has NaN, and the reason in ``status``. Other arguments, columns and ``attrs`` as of
+        point(); ``branch_ends`` holds the pairs of speeds between which a branch ends.
+        """
+        arguments = Arguments()
+        simulation = requests.curve(
+            arguments,
+            lubricant,
+            options,
+            speeds_kilometres_per_hour=speeds_kilometres_per_hour,
+            direction=direction,
+            independent_points=independent_points,
+            ascent_angle_degrees=ascent_angle_degrees,
+            gear_set=gear_set,
+            surface=surface,
+            vehicle=vehicle,
+            sump_temperature_celsius=sump_temperature_celsius,
+            inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+            tolerance=tolerance,
+            model=model,
+        )
+        (found,) = await self._solve(arguments, [simulation], options, "curve")
+        return frame(_columns(found), result_attrs(found))
+
+    async def compare(
+        self,
+        lubricants: Sequence[str],
+        *,
+        speeds_kilometres_per_hour: Sequence[Quantity] | None = None,
+        direction: str | None = None,
+        independent_points: bool = False,
+        ascent_angle_degrees: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        sump_temperature_celsius: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        tolerance: float | None = None,
+        model: str | None = None,
+        options: Options = Options(),
+    ) -> Frame:
+        """Returns the curves of several lubricants in one table, with a column ``lubricant``.
+
+        Arguments as of curve(). The curves run together; one refused lubricant refuses all.
+        ``attrs["results"]`` holds the attributes of each curve by the name of its lubricant.
+        """
+        if isinstance(lubricants, str):
+            lubricants = [lubricants]
+        arguments = Arguments()
+        first = requests.curve(
+            arguments,
+            lubricants[0] if lubricants else "",
+            options,
+            speeds_kilometres_per_hour=speeds_kilometres_per_hour,
+            direction=direction,
+            independent_points=independent_points,
+            ascent_angle_degrees=ascent_angle_degrees,
+            gear_set=gear_set,
+            surface=surface,
+            vehicle=vehicle,
+            sump_temperature_celsius=sump_temperature_celsius,
+            inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+            tolerance=tolerance,
+            model=model,
+        )
+        simulations = [_with_lubricant(first, each) for each in lubricants]
+        curves = await self._solve(arguments, simulations, options, "curve")
+        rows = []
+        for name, each in zip(lubricants, curves):
+            rows += [{"lubricant": name, **point_row(point)} for point in each.result.points]
+        attrs = {name: result_attrs(each) for name, each in zip(lubricants, curves)}
+        return frame(in_columns(rows), {"results": attrs})
+
+    async def histories(
+        self,
+        lubricant: str,
+        columns: Sequence[str],
+        *,
+        mesh_cycles: int = 1,
+        samples_per_mesh_cycle: int = 192,
+        speed_kilometres_per_hour: Quantity | None = None,
+        acceleration_metres_per_second_squared: Quantity | None = None,
+        ascent_angle_degrees: Quantity | None = None,
+        pinion_torque_newton_metres: Quantity | None = None,
+        pinion_speed_radians_per_second: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        sump_temperature_celsius: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        tolerance: float | None = None,
+        model: str | None = None,
+        options: Options = Options(),
+    ) -> Frame:
+        """Returns time histories of the steady state at one operating point: one row a sample.
+
+        ``columns``: names such as "mesh_force_newtons"; schema() lists them as "history.columns".
+        ``mesh_cycles`` times ``samples_per_mesh_cycle`` rows, at most 20 million values. Other
+        arguments as of point(). ``attrs["units"]`` holds the symbols of the units.
+        """
+        arguments = Arguments()
+        simulation = requests.operating_point(
+            arguments,
+            lubricant,
+            options,
+            speed_kilometres_per_hour=speed_kilometres_per_hour,
+            acceleration_metres_per_second_squared=acceleration_metres_per_second_squared,
+            ascent_angle_degrees=ascent_angle_degrees,
+            pinion_torque_newton_metres=pinion_torque_newton_metres,
+            pinion_speed_radians_per_second=pinion_speed_radians_per_second,
+            gear_set=gear_set,
+            surface=surface,
+            vehicle=vehicle,
+            sump_temperature_celsius=sump_temperature_celsius,
+            inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+            tolerance=tolerance,
+            model=model,
+        )
+        wanted = simulation.operating_point.history
+        wanted.columns[:] = [columns] if isinstance(columns, str) else columns
+        wanted.mesh_cycles = mesh_cycles
+        wanted.samples_per_mesh_cycle = samples_per_mesh_cycle
+        (found,) = await self._solve(arguments, [simulation], options, "history")
+        history = await self.read_history(found.name)
+        history.attrs = {**result_attrs(found), **history.attrs}
+        return history
+
+    async def read_history(
+        self,
+        simulation: str,
+        *,
+        columns: Sequence[str] = (),
+        start_row: int = 0,
+        row_count: int = 0,
+        max_points: int = 0,
+    ) -> Frame:
+        """Returns the history of a simulation, or a part of it; ``columns`` empty: all. With
+        ``max_points`` (4 to 1,000,000) and more rows than that a min/max envelope: row 2k is the
+        least and row 2k+1 the greatest value of ``attrs["rows_per_pair"]`` rows."""
+        name = full_name("simulations", simulation)
+        request = pb.ReadHistoryRequest(
+            name=name,
+            columns=columns,
+            start_row=start_row,
+            row_count=row_count,
+            max_points=max_points,
+        )
+        schema, values = await read_columns(
+            self._transport, "SimulationService", "ReadHistory", request
+        )
+        attrs = {
+            "simulation": name,
+            "start_row": schema.start_row,
+            "total_rows": schema.total_rows,
+            "rows_per_pair": schema.rows_per_pair,
+            "units": {each.name: each.unit for each in schema.columns},
+            "input_warnings": {each.code: each.message for each in schema.input_warnings},
         }
-        plain = str(value).lower().replace("_", "-").replace(" ", "-")
-        if plain not in words:
-            allowed = ", ".join(words)
-            self.violations.append(
-                Violation(name, f"{name} = {value}; allowed: {allowed}", str(value), allowed)
-            )
-        return words.get(plain, 0)
+        return frame({each.name: column for each, column in zip(schema.columns, values)}, attrs)
 
-    def wrong(self, name: str, description: str) -> None:
-        self.violations.append(Violation(name, description))
+    async def _solve(
+        self,
+        arguments: Arguments,
+        simulations: Sequence[pb.Simulation],
+        options: Options,
+        title: str,
+    ) -> list[pb.Simulation]:
+        """Runs all; raises the first error of one."""
+        several = len(simulations) > 1
+        jobs = [
+            requests.request(arguments, each, options, i if several else None)
+            for i, each in enumerate(simulations)
+        ]
+        arguments.check()
+        found = []
+        for outcome in await self._run_jobs(jobs, title, all_or_none=True):
+            if isinstance(outcome, TribodynError):
+                raise outcome
+            found.append(outcome)
+        return found
 
-    def check(self) -> None:
-        """Raises TribodynError if an argument is wrong."""
-        if self.violations:
-            raise invalid_fields(self.violations)
 
-
-def full_name(collection: str, name: str) -> str:
-    """Returns "lubricants/my-oil" for "my-oil"; other names as they are."""
-    return name if "/" in name or not name else f"{collection}/{name}"
-
-
-def scene(
-    arguments: Arguments,
-    lubricant: str,
-    options: Options,
-    *,
-    gear_set: str | None,
-    surface: str | None,
-    vehicle: str | None,
-    sump_temperature_celsius: Quantity | None,
-    inlet_temperature_rise_kelvin: Quantity | None,
-    tolerance: float | None,
-) -> pb.Simulation:
-    """Returns a simulation without a study."""
-    out = pb.Simulation(
-        lubricant=full_name("lubricants", str(lubricant)),
-        gear_set=full_name("gearSets", gear_set or ""),
-        surface=full_name("surfaces", surface or ""),
-        vehicle=full_name("vehicles", vehicle or ""),
-        display_name=options.display_name,
-    )
-    if sump_temperature_celsius is not None:
-        out.sump_temperature_celsius = arguments.number(
-            "sump_temperature_celsius", sump_temperature_celsius
-        )
-    if inlet_temperature_rise_kelvin is not None:
-        out.inlet_temperature_rise_kelvin = arguments.number(
-            "inlet_temperature_rise_kelvin", inlet_temperature_rise_kelvin
-        )
-    for key, value in options.labels.items():
-        out.labels.add(key=key, value=value)
-    if options.deadline_seconds is not None:
-        out.deadline_seconds = options.deadline_seconds
-    solver = out.solver_options
-    for name in (
-        "march_step_tolerance",
-        "march_settling_tolerance",
-        "maximum_mesh_cycles",
-        "recorded_mesh_cycles",
-    ):
-        if getattr(options, name) is not None:
-            setattr(solver, name, getattr(options, name))
-    if tolerance is not None:
-        solver.tolerance = tolerance
-    if options.method is not None:
-        solver.method = arguments.word(
-            "method", options.method, results_pb2.SteadyStateMethod, "STEADY_STATE_METHOD_"
-        )
-    set_switches(arguments, "model_options", options.model_options, out.model_options)
+def _with_lubricant(simulation: pb.Simulation, lubricant: str) -> pb.Simulation:
+    """Returns the same simulation of another lubricant."""
+    out = pb.Simulation()
+    out.CopyFrom(simulation)
+    out.lubricant = full_name("lubricants", lubricant)
     return out
 
 
-def point(
-    arguments: Arguments,
-    simulation: pb.Simulation,
-    options: Options,
-    *,
-    speed_kilometres_per_hour: Quantity | None = None,
-    acceleration_metres_per_second_squared: Quantity | None = None,
-    ascent_angle_degrees: Quantity | None = None,
-    pinion_torque_newton_metres: Quantity | None = None,
-    pinion_speed_radians_per_second: Quantity | None = None,
-    model: str | None = None,
-) -> pb.OperatingPointStudy:
-    """Sets and returns the study of an operating point."""
-    study = simulation.operating_point
-    study.SetInParent()
-    if pinion_torque_newton_metres is not None or pinion_speed_radians_per_second is not None:
-        if speed_kilometres_per_hour is not None:
-            arguments.wrong(
-                "speed_kilometres_per_hour", "state either a speed, or a torque with a pinion speed"
-            )
-        if pinion_torque_newton_metres is None or pinion_speed_radians_per_second is None:
-            arguments.wrong(
-                "pinion_torque_newton_metres",
-                "pinion_torque_newton_metres and pinion_speed_radians_per_second count "
-                "only together",
-            )
-            return study
-        load = study.prescribed_torque
-        load.pinion_torque_newton_metres = arguments.number(
-            "pinion_torque_newton_metres", pinion_torque_newton_metres
-        )
-        load.pinion_speed_radians_per_second = arguments.number(
-            "pinion_speed_radians_per_second", pinion_speed_radians_per_second
-        )
-    elif speed_kilometres_per_hour is None:
-        arguments.wrong(
-            "speed_kilometres_per_hour",
-            "speed_kilometres_per_hour is missing; or state "
-            "pinion_torque_newton_metres and pinion_speed_radians_per_second",
-        )
-    else:
-        moving: Any = study.cruise
-        if acceleration_metres_per_second_squared is not None:
-            moving = study.drive_cycle_snapshot
-            moving.acceleration_metres_per_second_squared = arguments.number(
-                "acceleration_metres_per_second_squared", acceleration_metres_per_second_squared
-            )
-        moving.speed_kilometres_per_hour = arguments.number(
-            "speed_kilometres_per_hour", speed_kilometres_per_hour
-        )
-        if ascent_angle_degrees is not None:
-            moving.ascent_angle_degrees = arguments.number(
-                "ascent_angle_degrees", ascent_angle_degrees
-            )
-    _set_model(arguments, study, model, options)
-    return study
-
-
-def curve(
-    arguments: Arguments,
-    simulation: pb.Simulation,
-    options: Options,
-    *,
-    speeds_kilometres_per_hour: Sequence[Quantity] | None = None,
-    direction: str | None = None,
-    independent_points: bool = False,
-    ascent_angle_degrees: Quantity | None = None,
-    model: str | None = None,
-) -> pb.InefficiencyCurveStudy:
-    """Sets and returns the study of a curve over speed."""
-    study = simulation.inefficiency_curve
-    speeds: Any = (
-        DEFAULT_SPEEDS if speeds_kilometres_per_hour is None else speeds_kilometres_per_hour
-    )
-    if isinstance(speeds, (str, int, float)) or not hasattr(speeds, "__iter__"):
-        speeds = [speeds]
-    study.speeds_kilometres_per_hour[:] = [
-        arguments.number("speeds_kilometres_per_hour", each) for each in speeds
-    ]
-    if direction is not None:
-        study.direction = arguments.word(
-            "direction", direction, results_pb2.SweepDirection, "SWEEP_DIRECTION_"
-        )
-    study.independent_points = independent_points
-    if ascent_angle_degrees is not None:
-        study.ascent_angle_degrees = arguments.number("ascent_angle_degrees", ascent_angle_degrees)
-    _set_model(arguments, study, model, options)
-    return study
-
-
-def request(
-    arguments: Arguments, simulation: pb.Simulation, options: Options, index: int | None = None
-) -> pb.CreateSimulationRequest:
-    """Returns the request to create a simulation; ``index`` counts those of one call."""
-    out = pb.CreateSimulationRequest(simulation=simulation, force=options.force)
-    out.request_id = options.request_id or new_request_id()
-    if options.request_id and index is not None:
-        out.request_id += f"/{index}"
-    if options.scheduling_class is not None:
-        out.scheduling_class = arguments.word(
-            "scheduling_class", options.scheduling_class, pb.SchedulingClass, "SCHEDULING_CLASS_"
-        )
-    return out
-
-
-def _set_model(arguments: Arguments, study: Any, model: str | None, options: Options) -> None:
-    if model is not None:
-        study.model = arguments.word("model", model, results_pb2.PointModel, "POINT_MODEL_")
-    if options.start is not None:
-        study.start = arguments.word("start", options.start, results_pb2.PointStart, "POINT_START_")
-
-
-def set_switches(arguments: Arguments, path: str, switches: Mapping[str, Any], out: Any) -> None:
-    fields = out.DESCRIPTOR.fields_by_name
-    for name, value in switches.items():
-        described = fields.get(name)
-        if described is None:
-            arguments.wrong(f"{path}.{name}", f"{name} is unknown; allowed: {', '.join(fields)}")
-        elif described.message_type is not None:
-            set_switches(arguments, f"{path}.{name}", value, getattr(out, name))
-        elif described.enum_type is not None:
-            kind = getattr(type(out), described.enum_type.name)
-            setattr(out, name, arguments.word(f"{path}.{name}", value, kind, name.upper() + "_"))
-        else:
-            setattr(out, name, bool(value))
+def _columns(simulation: pb.Simulation) -> Mapping[str, Sequence[Any]]:
+    return in_columns(point_row(point) for point in simulation.result.points)

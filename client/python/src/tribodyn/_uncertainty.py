@@ -5,17 +5,146 @@ from __future__ import annotations
 import itertools
 from typing import Any, Mapping, Sequence
 
+from tribodyn._arguments import Arguments, full_name, full_names, set_switches
 from tribodyn._frames import Frame, enum_word, frame, in_columns, message_cells
-from tribodyn._studies import Arguments, full_name, set_switches
-from tribodyn._transport import Transport
+from tribodyn._session import Session
 from tribodyn.units import Quantity
 from tribodyn.v1 import points_pb2 as pb
 
 _VERDICT = "verdict"
 
 
-def scene(
-    arguments: Arguments,
+class Comparisons(Session):
+    """Methods of a client for a few lubricants with the uncertainty of their inputs."""
+
+    async def compare_points(
+        self,
+        lubricants: Sequence[str],
+        *,
+        speeds_kilometres_per_hour: Sequence[Quantity] = (60,),
+        sump_temperatures_celsius: Sequence[Quantity] = (40,),
+        speed_weights: Sequence[float] | None = None,
+        sump_weights: Sequence[float] | None = None,
+        ascent_angle_degrees: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        sump_temperature_uncertainty_kelvin: float | None = None,
+        inlet_temperature_rise_uncertainty_kelvin: float | None = None,
+        estimate_correlation: float | None = None,
+        draws: int | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        tolerance: float | None = None,
+        model_options: Mapping[str, Any] | None = None,
+        sheared: bool = False,
+        contact_figures: bool = False,
+    ) -> Frame:
+        """Returns one to eight lubricants at every speed and sump temperature with the uncertainty
+        of their inputs, one row for each lubricant and condition, and what each loses more than the
+        first: `difference_percent_value` with its 95 % interval, `lower_probability` and `verdict`
+        ("lower", "higher", "cannot-be-told-apart").
+
+        Columns FIGURE_standard_uncertainty come from ``draws`` draws of the inputs (None: 199),
+        FIGURE_solver_error is the solver's. Uncertainties of temperatures are standard ones, in K.
+        ``estimate_correlation`` (0 to 1; None: 0.5) is that of estimates that one estimator made for
+        two lubricants. ``sheared``: the lubricants after the shear test. ``contact_figures``: also
+        film ratio, friction coefficient, pressure and temperatures. ``attrs["mean"]`` is a table of
+        the weighted means, with the probability of the least and the input to measure first.
+        Weights as of screen(); nothing is kept.
+        """
+        request = pb.ComparePointsRequest(
+            lubricants=full_names("lubricants", lubricants),
+            sheared_lubricant=sheared,
+            contact_figures=contact_figures,
+        )
+        _set_scene(
+            request,
+            speeds_kilometres_per_hour=speeds_kilometres_per_hour,
+            sump_temperatures_celsius=sump_temperatures_celsius,
+            speed_weights=speed_weights,
+            sump_weights=sump_weights,
+            ascent_angle_degrees=ascent_angle_degrees,
+            inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+            sump_temperature_uncertainty_kelvin=sump_temperature_uncertainty_kelvin,
+            inlet_temperature_rise_uncertainty_kelvin=inlet_temperature_rise_uncertainty_kelvin,
+            estimate_correlation=estimate_correlation,
+            draws=draws,
+            gear_set=gear_set,
+            surface=surface,
+            vehicle=vehicle,
+            tolerance=tolerance,
+            model_options=model_options,
+        )
+        return _compared(
+            request, await self._call("PointService", "ComparePoints", request, patient=True)
+        )
+
+    async def explain(
+        self,
+        lubricant: str,
+        other_lubricant: str,
+        *,
+        speeds_kilometres_per_hour: Sequence[Quantity] = (60,),
+        sump_temperatures_celsius: Sequence[Quantity] = (40,),
+        speed_weights: Sequence[float] | None = None,
+        sump_weights: Sequence[float] | None = None,
+        ascent_angle_degrees: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        sump_temperature_uncertainty_kelvin: float | None = None,
+        inlet_temperature_rise_uncertainty_kelvin: float | None = None,
+        estimate_correlation: float | None = None,
+        draws: int | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        tolerance: float | None = None,
+        model_options: Mapping[str, Any] | None = None,
+        other_surface: str | None = None,
+        sheared: bool = False,
+        other_sheared: bool = False,
+    ) -> Frame:
+        """Returns why ``other_lubricant`` loses more or less than ``lubricant``: the share of each
+        of six groups of parameters in the difference, one row for each condition and group.
+
+        ``inefficiency_percent_shapley_value_value`` is the share in percentage points, with its
+        uncertainty in the columns beside it; the shares of all groups sum to the difference.
+        ``..._first_effect`` and ``..._last_effect`` are what the group adds if it is exchanged before
+        and after all others. ``attrs["mean"]`` is the same table for the weighted mean,
+        ``attrs["interactions"]`` what pairs of groups add beyond what each adds alone.
+        ``draws``: None: 99. ``other_surface``: of the other lubricant, with the boundary film that
+        it makes. Other arguments as of compare_points().
+        """
+        request = pb.ExplainPointsRequest(
+            lubricant=full_name("lubricants", lubricant),
+            other_lubricant=full_name("lubricants", other_lubricant),
+            other_surface=full_name("surfaces", other_surface or ""),
+            sheared_lubricant=sheared,
+            other_sheared_lubricant=other_sheared,
+        )
+        _set_scene(
+            request,
+            speeds_kilometres_per_hour=speeds_kilometres_per_hour,
+            sump_temperatures_celsius=sump_temperatures_celsius,
+            speed_weights=speed_weights,
+            sump_weights=sump_weights,
+            ascent_angle_degrees=ascent_angle_degrees,
+            inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+            sump_temperature_uncertainty_kelvin=sump_temperature_uncertainty_kelvin,
+            inlet_temperature_rise_uncertainty_kelvin=inlet_temperature_rise_uncertainty_kelvin,
+            estimate_correlation=estimate_correlation,
+            draws=draws,
+            gear_set=gear_set,
+            surface=surface,
+            vehicle=vehicle,
+            tolerance=tolerance,
+            model_options=model_options,
+        )
+        return _explained(
+            request, await self._call("PointService", "ExplainPoints", request, patient=True)
+        )
+
+
+def _set_scene(
     out: Any,
     *,
     speeds_kilometres_per_hour: Sequence[Quantity],
@@ -24,36 +153,27 @@ def scene(
     sump_weights: Sequence[float] | None,
     ascent_angle_degrees: Quantity | None,
     inlet_temperature_rise_kelvin: Quantity | None,
-    sump_temperature_uncertainty_kelvin: float | None,
-    inlet_temperature_rise_uncertainty_kelvin: float | None,
-    estimate_correlation: float | None,
-    draws: int | None,
     gear_set: str | None,
     surface: str | None,
     vehicle: str | None,
-    tolerance: float | None,
     model_options: Mapping[str, Any] | None,
+    **settings: float | None,
 ) -> None:
     """Sets what requests for comparisons and explanations have in common: conditions by sump, then
-    by speed, and hardware."""
-    speeds = [
-        arguments.number("speeds_kilometres_per_hour", each) for each in speeds_kilometres_per_hour
-    ]
-    sumps = [
-        arguments.number("sump_temperatures_celsius", each) for each in sump_temperatures_celsius
-    ]
+    by speed, and hardware. ``settings``: other fields that are numbers. Raises TribodynError if an
+    argument is wrong."""
+    arguments = Arguments()
+    speeds = arguments.numbers("speeds_kilometres_per_hour", speeds_kilometres_per_hour)
+    sumps = arguments.numbers("sump_temperatures_celsius", sump_temperatures_celsius)
     for sump, speed in itertools.product(sumps, speeds):
         condition = out.conditions.add(
             speed_kilometres_per_hour=speed, sump_temperature_celsius=sump
         )
-        if ascent_angle_degrees is not None:
-            condition.ascent_angle_degrees = arguments.number(
-                "ascent_angle_degrees", ascent_angle_degrees
-            )
-        if inlet_temperature_rise_kelvin is not None:
-            condition.inlet_temperature_rise_kelvin = arguments.number(
-                "inlet_temperature_rise_kelvin", inlet_temperature_rise_kelvin
-            )
+        common = {
+            "ascent_angle_degrees": ascent_angle_degrees,
+            "inlet_temperature_rise_kelvin": inlet_temperature_rise_kelvin,
+        }
+        arguments.set_numbers(condition, common)
     if speed_weights is not None or sump_weights is not None:
         by_speed = _weights(arguments, "speed_weights", speed_weights, len(speeds))
         by_sump = _weights(arguments, "sump_weights", sump_weights, len(sumps))
@@ -61,17 +181,11 @@ def scene(
     out.gear_set = full_name("gearSets", gear_set or "")
     out.surface = full_name("surfaces", surface or "")
     out.vehicle = full_name("vehicles", vehicle or "")
-    stated = {
-        "sump_temperature_uncertainty_kelvin": sump_temperature_uncertainty_kelvin,
-        "inlet_temperature_rise_uncertainty_kelvin": inlet_temperature_rise_uncertainty_kelvin,
-        "estimate_correlation": estimate_correlation,
-        "draws": draws,
-        "tolerance": tolerance,
-    }
-    for name, value in stated.items():
+    for name, value in settings.items():
         if value is not None:
             setattr(out, name, value)
     set_switches(arguments, "model_options", model_options or {}, out.model_options)
+    arguments.check()
 
 
 def _weights(
@@ -84,9 +198,8 @@ def _weights(
     return [float(each) for each in weights]
 
 
-async def compared(transport: Transport, request: pb.ComparePointsRequest) -> Frame:
+def _compared(request: pb.ComparePointsRequest, answer: pb.ComparePointsResponse) -> Frame:
     """Returns one row for each lubricant and condition."""
-    answer = await transport.call("PointService", "ComparePoints", request, patient=True)
     rows, means = [], []
     for lubricant in answer.lubricants:
         differences = list(lubricant.differences) or [None] * len(lubricant.points)
@@ -125,9 +238,8 @@ async def compared(transport: Transport, request: pb.ComparePointsRequest) -> Fr
     return frame(in_columns(rows), attrs)
 
 
-async def explained(transport: Transport, request: pb.ExplainPointsRequest) -> Frame:
+def _explained(request: pb.ExplainPointsRequest, answer: pb.ExplainPointsResponse) -> Frame:
     """Returns one row for each condition and group of parameters."""
-    answer = await transport.call("PointService", "ExplainPoints", request, patient=True)
     rows = []
     for condition, point in zip(request.conditions, answer.points):
         rows += [
