@@ -270,6 +270,25 @@ TEST(Arguments, ComplaintsNameTheTypedFlag) {
   EXPECT_EQ(wrong.complaints.size(), 2U) << "a flag that cannot be read counts as given";
 }
 
+TEST(Arguments, AFlagThatCannotBeReadIsNotMissing) {
+  const Outcome outcome({"point", "-l", "paper-fluid-1", "--speed", "72,5"});
+  EXPECT_TRUE(outcome.complains_of("has a decimal comma"));
+  EXPECT_EQ(outcome.complaints.size(), 1U);
+  EXPECT_TRUE(Outcome({"point", "-l", "paper-fluid-1"}).complains_of("--speed is missing"));
+}
+
+TEST(Arguments, RefuseZeroWhereTheServerWouldTakeTheDefault) {
+  const auto history = [](const std::string& flag, const std::string& value) {
+    return Outcome({"history", "-l", "paper-fluid-1", "--speed", "60", flag, value});
+  };
+  EXPECT_TRUE(history("--mesh-cycles", "0")
+                  .complains_of("--mesh-cycles: '0' is not within 1 to 1000 mesh cycles"));
+  EXPECT_TRUE(history("--mesh-cycles", "2").complaints.empty());
+  EXPECT_TRUE(
+      Outcome({"traction", "my-oil", "--radius-y-metres", "0", "--draws", "0"}).complaints.empty())
+      << "0 has a meaning there";
+}
+
 /// Returns the message for a violation of the server if the user typed these arguments.
 std::string message_for(const std::vector<std::string>& arguments,
                         const FieldViolation& violation) {
@@ -283,6 +302,52 @@ std::string message_for(const std::vector<std::string>& arguments,
                            "INVALID_FIELDS", {violation}, std::nullopt);
   const std::string text = with_flag_names(error, parsed.typed_flags).what();
   return text.substr(text.find('\n') + 3);
+}
+
+TEST(ServerErrors, NameTheFlagOfASettingOfARig) {
+  const FieldViolation load = {"grid.loads_newtons[1]",
+                               "loads_newtons = -5 N; allowed: 1e-6 to 1e6 N"};
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"traction", "my-oil", "--load", "35,-5"},
+        {"traction", "my-oil", "--load", "35", "--load", "-5"}}) {
+    EXPECT_EQ(message_for(arguments, load), "--load = -5 N; allowed: 1e-6 to 1e6 N");
+  }
+  EXPECT_EQ(message_for({"screen", "--lubricants", "a,b", "--rig", "traction", "--srr", "5,900"},
+                        {"campaign.rig.grid.slide_roll_ratios_percent[1]",
+                         "slide_roll_ratios_percent = 900 %; allowed: -200 to 200 %"}),
+            "--srr = 900 %; allowed: -200 to 200 %");
+  EXPECT_EQ(message_for({"film", "my-oil", "--pressure", "0.5GPa,2kPa"},
+                        {"grid.mean_pressures_pascals[1]",
+                         "mean_pressures_pascals = 2000 Pa; allowed: 10000 to 1e11 Pa"}),
+            "--pressure 2kPa = 2000 Pa; allowed: 10000 to 1e11 Pa");
+}
+
+TEST(ServerErrors, NameTheArgumentThatIsWrong) {
+  EXPECT_EQ(message_for({"lubricants", "create", "my oil", "--kv40", "100"},
+                        {"lubricant_id", "\"my oil\"; did you mean \"my-oil\"?"}),
+            "NAME: \"my oil\"; did you mean \"my-oil\"?");
+  const FieldViolation column = {"objective.figure.column",
+                                 "no such column here; did you mean \"cost\"?"};
+  EXPECT_EQ(message_for({"campaigns", "rank", "12", "--least", "cots"}, column),
+            "--least cots: no such column here; did you mean \"cost\"?");
+  EXPECT_EQ(message_for({"campaigns", "rank", "12", "--where", "cost<=3", "--where", "cots<=3"},
+                        {"constraints[1].figure.column", column.description}),
+            "--where cots<=3: no such column here; did you mean \"cost\"?");
+}
+
+TEST(Arguments, NameTheOwnersOfAParameterThatIsUnknown) {
+  for (const std::string flag : {"--range", "--uncertainty"}) {
+    const std::string value = flag == "--range" ? "=0.1:0.2" : "=10%";
+    const auto complains = [&](const std::string& parameter, const std::string& part) {
+      return Outcome({"screen", "--like", "my-oil", "--count", "9", flag, parameter + value})
+          .complains_of(part);
+    };
+    EXPECT_TRUE(complains("asperity-frictoin-coefficient",
+                          "is not a parameter of a lubricant or a surface (is "
+                          "asperity-friction-coefficient meant?)"));
+    EXPECT_TRUE(complains("cost", "'cost' is not a parameter of a lubricant or a surface"));
+    EXPECT_FALSE(complains("surface.asperity_friction_coefficient", "is not a parameter"));
+  }
 }
 
 TEST(ServerErrors, NameTheTypedFlagAndTheCorrectSpelling) {

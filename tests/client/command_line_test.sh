@@ -155,7 +155,10 @@ out_is_json
 sed -i 's/0.04/0,04x/' "$folder/rig.csv"
 expect 2 stribeck paper-fluid-1 --measured "$folder/rig.csv"
 expect 1 traction paper-fluid-11
-expect 1 traction paper-fluid-1 --slide-roll-ratio 300
+expect 1 traction paper-fluid-1 --slide-roll-ratio 5,300
+err_has '^  --slide-roll-ratio = 300 %; allowed: -200 to 200 %'
+expect 1 traction paper-fluid-1 --load 35,-5
+err_has '^  --load = -5 N; allowed: 1e-06 to 1000000 N'
 expect 2 traction
 
 expect 0 traction paper-fluid-1 paper-fluid-2 --map slide-roll-ratio,pressure --plot "$folder/map.svg"
@@ -225,6 +228,9 @@ expect 1 cycle paper-fluid-1 paper-fluid-11 --cycle "$folder/bad.csv"
 err_has 'did you mean "lubricants/paper-fluid-1"'
 err_has 'bad.csv, line 6, time_seconds: time_seconds = 5 s; allowed: above that of the place before, 5 s'
 err_has 'bad.csv, line 7, speed_kilometres_per_hour: .* acceleration of -161.1 m/s2; allowed: -50 to 50 m/s2'
+printf 'Time (s),speed\n0,10\n' >"$folder/bad.csv"
+expect 1 cycle paper-fluid-1 --cycle "$folder/bad.csv"
+err_has 'bad.csv: unknown column Time \(s\) \(is time_seconds meant\?\); allowed: time_seconds'
 printf 'time_seconds,speed_kilometres_per_hour\n0,10\n' >"$folder/bad.csv"
 expect 1 cycle paper-fluid-1 --cycle "$folder/bad.csv"
 err_has 'bad.csv: 1 place; allowed: two places or more'
@@ -358,7 +364,7 @@ out_has '"verdict": "CANNOT_BE_TOLD_APART"'
 expect 2 compare
 err_has 'give lubricants'
 expect 2 compare sheet-a --speed 40,60 --weights 1
-err_has '1 weights of 2 speeds'
+err_has '1 weight of 2 speeds'
 expect 1 compare sheet-a no-such-oil
 err_has 'lubricants/no-such-oil'
 expect 0 compare sheet-a sheet-b --speed 40,60 --sumps 40,90 --weights 2,1 --sump-weights 1,3 --draws 19 \
@@ -368,7 +374,7 @@ out_has '^ +60 +90 '
 out_has 'tribodyn explain sheet-.@1 sheet-.@1 --speed 40,60 --weights 6,3 --sump 90$'
 grep -q 'sheet-b@1, 90 C' "$folder/compared.svg" || fail 'no line for the second sump temperature'
 expect 2 compare sheet-a --sumps 40,90 --sump-weights 1
-err_has '1 weights of 2 sump temperatures'
+err_has '1 weight of 2 sump temperatures'
 
 echo "--- from data sheets to a decision in three commands"
 cat >"$folder/oils.csv" <<'SHEETS'
@@ -418,7 +424,7 @@ out_is_json
 expect 2 explain paper-fluid-1
 err_has 'give two lubricants'
 expect 2 explain paper-fluid-1 paper-fluid-3 --speed 40,60 --weights 1
-err_has '1 weights of 2 speeds'
+err_has '1 weight of 2 speeds'
 expect 1 explain paper-fluid-1 no-such-oil
 err_has 'lubricants/no-such-oil'
 expect 0 lubricants create sheet-c --kv40 103 --kv100 15.1 --kv100-sheared 13.6 --density15 868 --base-oil-class pao
@@ -497,7 +503,7 @@ expect 0 screen "$table" --like paper-fluid-1
 out_has '^ *1  A  '
 out_has 'B: A kinematic viscosity of 73 mm2/s at 100 C must be below'
 expect 2 screen "$table" --like paper-fluid-1 --weights 1,2 --csv "$folder/x" --jsonl "$folder/y"
-err_has '2 weights of 1 speeds'
+err_has '2 weights of 1 speed;'
 err_has 'give either --csv or --jsonl'
 expect 1 screen "$table" --like no-such-oil --speeds 900
 err_has '--speeds = 900 km/h'
@@ -564,7 +570,18 @@ expect 2 campaigns rank "$campaign" --least cost:median --where cost=3
 err_has 'is not COLUMN, COLUMN:min, COLUMN:max or COLUMN:mean'
 err_has 'is not FIGURE>=VALUE or FIGURE<=VALUE'
 expect 0 campaigns effects "$campaign"
-out_has 'cost \(FOLLOWS_FROM_OTHERS\)'
+out_has 'cost \(follows from the columns before it\)'
+expect 1 campaigns rank "$campaign" --least cots
+err_has '^  --least cots: no such column here; did you mean "cost"'
+printf '%s\n' name,relaxation_time_seconds,asperity_friction A,4e-7,1 B,5e-7,2 >"$table"
+expect 2 screen "$table" --like paper-fluid-1
+err_has "column 'asperity_friction' is no parameter \(is asperity_friction_coefficient meant\?\); --carry"
+expect 0 screen "$table" --like paper-fluid-1 --carry asperity_friction
+carrying=$(grep -oE 'screen --campaign [0-9]+' "$folder/out" | grep -oE '[0-9]+$')
+printf '%s\n' name,relaxation_time_seconds,asperity_friction C,6e-7,3 >"$table"
+expect 0 campaigns append "$carrying" "$table"
+expect 0 screen --campaign "$carrying"
+out_has 'best of 3 candidates'
 expect 0 campaigns promote "$campaign" --candidate 7 --lubricant promoted-oil
 out_has 'created lubricants/promoted-oil'
 expect 1 campaigns promote "$campaign" --candidate 7 --lubricant promoted-oil

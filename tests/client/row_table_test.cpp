@@ -124,11 +124,24 @@ TEST(RowTable, ListsAnErrorOfManyRowsOnce) {
   for (int i = 0; i < 30; ++i)
     text += "oil-" + std::to_string(i) + ",x" + (i == 7 ? "x" : "") + ",none\n";
   const std::string said = table_error(text);
-  EXPECT_NE(said.find("60 errors of 3 kinds, each listed once"), std::string::npos) << said;
+  EXPECT_NE(said.find("60 errors of 2 kinds:"), std::string::npos) << said;
   EXPECT_NE(said.find("row 2 column kv40: 'x' is not a number"), std::string::npos) << said;
   EXPECT_NE(said.find("(and in 28 more, the last row 31)"), std::string::npos) << said;
   EXPECT_NE(said.find("row 9 column kv40: 'xx'"), std::string::npos) << said;
   EXPECT_EQ(count(said, "'none' must be one of"), 1U) << said;
+}
+
+TEST(RowTable, SumsUpErrorsThatDifferInTheCellAlone) {
+  std::string text = "name,kv40,relaxation_time\n";
+  for (int i = 0; i < 90; ++i) {
+    text += "oil-" + std::to_string(i) + ",73.3," + std::to_string(100 + i) + "\n";
+  }
+  const std::string said = table_error(text);
+  EXPECT_NE(said.find("90 errors of 1 kind:"), std::string::npos) << said;
+  EXPECT_NE(said.find("row 2 column relaxation_time: '100' needs its unit"), std::string::npos)
+      << said;
+  EXPECT_EQ(count(said, "needs its unit"), 3U) << said;
+  EXPECT_NE(said.find("... 87 more like these, the last in row 91"), std::string::npos) << said;
 }
 
 TEST(RowTable, NamesHeadersThatAreUnknownRepeatedOrInAWrongUnit) {

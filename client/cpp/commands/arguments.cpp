@@ -152,7 +152,8 @@ Parsed parse_arguments(const std::vector<std::string>& arguments,
   complain_of_extras(root, *app, parsed.command, commands, common_flags, parsed.complaints);
   if (parsed.command == nullptr) return parsed;
   const auto typed = [&](const Flag& flag) {
-    TypedFlag out{typed_name(flag, arguments), given[&flag], flag.bare_unit};
+    const std::string name = flag.is_positional() ? flag.value_name : typed_name(flag, arguments);
+    TypedFlag out{name, given[&flag], flag.bare_unit};
     const bool is_list_of_numbers = flag.is_repeatable && !flag.bare_unit.empty();
     if (is_list_of_numbers) out.texts = split(joined(out.texts, ","), ',');
     return out;
@@ -165,12 +166,27 @@ Parsed parse_arguments(const std::vector<std::string>& arguments,
         parsed.complaints.push_back(flag.first_name() + " is not UTF-8 text");
       } else {
         flag.read(texts->second, parsed.complaints);
-        if (!flag.is_positional()) parsed.typed_flags[flag.field_name()] = typed(flag);
+        const bool sets_field = !flag.is_positional() || !flag.field.empty();
+        if (sets_field) parsed.typed_flags[flag.field_name()] = typed(flag);
       }
     }
   }
   name_flags_as_typed(arguments, {&parsed.command->flags, &common_flags}, parsed.complaints);
-  if (parsed.command->check) parsed.command->check(parsed.complaints);
+  if (!parsed.command->check) return parsed;
+  const std::size_t before = parsed.complaints.size();
+  parsed.command->check(parsed.complaints);
+  // A flag that is given and cannot be read is not missing.
+  const auto is_given = [&given](const std::string& complaint) {
+    const std::string flag = complaint.substr(0, complaint.find(" is missing"));
+    return std::any_of(given.begin(), given.end(), [&flag](const auto& each) {
+      const std::vector<std::string> names = split(each.first->names, ',');
+      return std::find(names.begin(), names.end(), flag) != names.end();
+    });
+  };
+  parsed.complaints.erase(
+      std::remove_if(parsed.complaints.begin() + static_cast<std::ptrdiff_t>(before),
+                     parsed.complaints.end(), is_given),
+      parsed.complaints.end());
   return parsed;
 }
 

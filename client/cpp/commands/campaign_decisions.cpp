@@ -3,68 +3,45 @@
 #include <string>
 #include <vector>
 
+#include "client/cpp/commands/campaign_command.h"
 #include "client/cpp/commands/candidate_flags.h"
-#include "client/cpp/commands/command.h"
 #include "client/cpp/report/candidate_decisions.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
 namespace {
 
+/// What the decisions between candidates have in common.
+template <class Request>
 struct DecisionFlags {
+  Request request;  ///< all but the name of the campaign and the objectives
   std::string campaign;
-  std::vector<v1::CandidateObjective> objectives;
-  v1::CandidateFigure figure;
-  std::vector<v1::CandidateConstraint> constraints;
-  std::vector<v1::ParameterUncertainty> uncertainties;
-  std::vector<double> weights;
-  std::vector<std::string> columns;
-  int count = 20;
-  double confidence = 0.95;
-  bool leaves_out_stated = false;
-  v1::PromoteCandidateRequest promotion;
-  bool has_candidate = false;
+  std::vector<v1::CandidateObjective> objectives;  ///< --least and --most, as given
 };
 
-using Flags = std::shared_ptr<DecisionFlags>;
-
-Command decision_command(const char* path, const char* summary, const char* about,
-                         const char* example, int (*run)(DecisionFlags&, const CommonOptions&),
-                         const Flags& flags) {
-  Command command{path, summary, about, {example}, {}, {}, {}};
-  command.flags.group("Arguments");
-  command.flags
-      .text(
-          "name", "NAME", "The campaign, e.g. 12 or campaigns/12 (`tribodyn campaigns list`).",
-          [flags](const std::string& name) { flags->campaign = resource_name("campaigns", name); })
-      .collection = "campaigns";
-  command.check = [flags](Complaints& complaints) {
-    if (flags->campaign.empty()) {
-      complaints.emplace_back("NAME is missing; `tribodyn campaigns list` shows the campaigns");
-    }
-  };
-  command.run = [flags, run](const CommonOptions& options) { return run(*flags, options); };
-  return command;
-}
-
 /// Adds --where and --weights.
-void add_selection_flags(FlagList& list, const Flags& flags) {
+template <class Request>
+void add_selection_flags(FlagList& list, Request& request) {
   Flag& where = list.raw("--where", "FIGURE>=VALUE",
                          "What a candidate must keep, e.g. film_ratio_minimum:min>=0.8 or cost<=3, "
                          "in the unit of the column; repeatable.");
   where.is_repeatable = true;
-  where.read = [flags](const std::vector<std::string>& texts, Complaints& complaints) {
+  where.field = "constraints";
+  where.read = [&request](const std::vector<std::string>& texts, Complaints& complaints) {
+    std::vector<v1::CandidateConstraint> constraints;
     for (const std::string& text : texts) {
-      read_candidate_constraint("--where", text, flags->constraints, complaints);
+      read_candidate_constraint("--where", text, constraints, complaints);
     }
+    *request.mutable_constraints() = {constraints.begin(), constraints.end()};
   };
   list.numbers("--weights", {"-", "above 0", "those of the campaign"},
                "Weights of the conditions in means, one for each",
-               [flags](double value) { flags->weights.push_back(value); });
+               [&request](double value) { request.add_condition_weights(value); })
+      .field = "condition_weights";
 }
 
 /// Adds --least and --most.
-void add_objective_flags(FlagList& list, const Flags& flags) {
+void add_objective_flags(FlagList& list, std::vector<v1::CandidateObjective>& objectives) {
   for (const bool wants_most : {false, true}) {
     const std::string name = wants_most ? "--most" : "--least";
     Flag& flag = list.raw(
@@ -75,10 +52,11 @@ void add_objective_flags(FlagList& list, const Flags& flags) {
                      "of another campaign with the same candidates with its number, e.g. "
                      "13/traction_coefficient.");
     flag.is_repeatable = true;
-    flag.read = [flags, wants_most, name](const std::vector<std::string>& texts,
-                                          Complaints& complaints) {
+    flag.field = "objective";
+    flag.read = [&objectives, wants_most, name](const std::vector<std::string>& texts,
+                                                Complaints& complaints) {
       for (const std::string& text : texts) {
-        v1::CandidateObjective& objective = flags->objectives.emplace_back();
+        v1::CandidateObjective& objective = objectives.emplace_back();
         objective.set_wants_most(wants_most);
         read_candidate_figure(name, text, *objective.mutable_figure(), complaints);
       }
@@ -94,179 +72,196 @@ void name_figure_column(Connection& connection, const std::string& campaign,
   figure.set_column(usual_column(connection.get_campaign(name)));
 }
 
-template <class Request>
-void set_selection(const DecisionFlags& flags, Request& request) {
-  request.set_name(flags.campaign);
-  *request.mutable_constraints() = {flags.constraints.begin(), flags.constraints.end()};
-  *request.mutable_condition_weights() = {flags.weights.begin(), flags.weights.end()};
-}
+/// A decision of the server: the figures of its request, the call, and the text of its answer.
+template <class Request, class Response>
+struct Decision {
+  std::vector<v1::CandidateFigure*> (*figures)(Request&);
+  Response (Connection::*decide)(const Request&);
+  std::string (*text)(const Request&, const Response&, OutputFormat);
+};
 
-int run_rank(DecisionFlags& flags, const CommonOptions& options) {
-  v1::RankCandidatesRequest request;
-  set_selection(flags, request);
-  if (!flags.objectives.empty()) *request.mutable_objective() = flags.objectives.front();
-  request.set_count(flags.count);
-  request.set_confidence(flags.confidence);
-  request.set_ignore_stated_uncertainties(flags.leaves_out_stated);
-  *request.mutable_uncertainties() = {flags.uncertainties.begin(), flags.uncertainties.end()};
+/// Makes the call and prints the answer, which it returns.
+template <class Request, class Response>
+Response decided(const Decision<Request, Response>& decision, const std::string& campaign,
+                 Request& request, const CommonOptions& options) {
+  request.set_name(campaign);
   Connection connection = options.connect();
-  name_figure_column(connection, request.name(), *request.mutable_objective()->mutable_figure());
-  const v1::RankCandidatesResponse answer = connection.rank_candidates(request);
-  std::cout << ranking_answer_text(request, answer, options.output_format);
-  return answer.candidates().empty() ? kExitFailed : kExitOk;
-}
-
-int run_pareto(DecisionFlags& flags, const CommonOptions& options) {
-  v1::FindParetoCandidatesRequest request;
-  set_selection(flags, request);
-  *request.mutable_second() = flags.objectives.back();
-  if (flags.objectives.size() == 2) *request.mutable_first() = flags.objectives.front();
-  Connection connection = options.connect();
-  name_figure_column(connection, request.name(), *request.mutable_first()->mutable_figure());
-  name_figure_column(connection, request.name(), *request.mutable_second()->mutable_figure());
-  const v1::FindParetoCandidatesResponse answer = connection.find_pareto_candidates(request);
-  std::cout << front_answer_text(request, answer, options.output_format);
-  return answer.candidates().empty() ? kExitFailed : kExitOk;
-}
-
-int run_effects(DecisionFlags& flags, const CommonOptions& options) {
-  v1::EstimateCandidateEffectsRequest request;
-  set_selection(flags, request);
-  *request.mutable_figure() = flags.figure;
-  *request.mutable_columns() = {flags.columns.begin(), flags.columns.end()};
-  request.set_coverage(flags.confidence);
-  Connection connection = options.connect();
-  name_figure_column(connection, request.name(), *request.mutable_figure());
-  const v1::EstimateCandidateEffectsResponse answer =
-      connection.estimate_candidate_effects(request);
-  std::cout << effects_answer_text(request, answer, options.output_format);
-  return kExitOk;
-}
-
-int run_promote(DecisionFlags& flags, const CommonOptions& options) {
-  flags.promotion.set_name(flags.campaign);
-  const v1::PromoteCandidateResponse answer = options.connect().promote_candidate(flags.promotion);
-  if (options.output_format == OutputFormat::kJson) {
-    std::cout << json_text(answer);
-    return kExitOk;
+  for (v1::CandidateFigure* figure : decision.figures(request)) {
+    name_figure_column(connection, campaign, *figure);
   }
-  const char* verb = flags.promotion.validate_only() ? "would create " : "created ";
-  if (answer.has_lubricant()) std::cout << verb << printable(answer.lubricant().name()) << "\n";
-  if (answer.has_surface()) std::cout << verb << printable(answer.surface().name()) << "\n";
-  return kExitOk;
+  Response answer = (connection.*decision.decide)(request);
+  std::cout << decision.text(request, answer, options.output_format);
+  return answer;
 }
 
 Command rank_command() {
-  const auto flags = std::make_shared<DecisionFlags>();
-  Command command = decision_command(
-      "campaigns rank", "rank the candidates of a campaign",
-      "Prints the best candidates of a campaign, finished or not, and which of them cannot be told "
-      "apart from the best one, by the stated uncertainties of parameters and the solver's errors. "
-      "Without --least or --most the mean inefficiency counts, of a rig the traction coefficient.",
-      "tribodyn campaigns rank 12 --where film_ratio_minimum:min>=0.8 --uncertainty "
-      "pressure-viscosity=3%",
-      run_rank, flags);
+  using Request = v1::RankCandidatesRequest;
+  const auto flags = std::make_shared<DecisionFlags<Request>>();
+  Command command = one_campaign_command(
+      {"campaigns rank", "rank the candidates of a campaign",
+       "Prints the best candidates of a campaign, finished or not, and which of them cannot be "
+       "told apart from the best one, by the stated uncertainties of parameters and the solver's "
+       "errors. Without --least or --most the mean inefficiency counts, of a rig the traction "
+       "coefficient.",
+       "tribodyn campaigns rank 12 --where film_ratio_minimum:min>=0.8 --uncertainty "
+       "pressure-viscosity=3%"},
+      flags->campaign);
   command.flags.group("Options");
-  add_objective_flags(command.flags, flags);
-  add_selection_flags(command.flags, flags);
+  Request& request = flags->request;
+  request.set_count(20);
+  request.set_confidence(0.95);
+  add_objective_flags(command.flags, flags->objectives);
+  add_selection_flags(command.flags, request);
   command.flags.whole_number("--count,-n", {"candidates", "1 to 1000", "20"},
                              "Candidates that are listed",
-                             [flags](int value) { flags->count = value; });
-  add_uncertainty_flag(command.flags, flags->uncertainties);
+                             [&request](int value) { request.set_count(value); });
+  const auto uncertainties = std::make_shared<std::vector<v1::ParameterUncertainty>>();
+  add_uncertainty_flag(command.flags, *uncertainties);
   command.flags.number("--confidence", {"-", "0.5 to 0.9999", "0.95"},
                        "Probability from which on a candidate is worse than the best one; others "
                        "are ties",
-                       [flags](double value) { flags->confidence = value; });
+                       [&request](double value) { request.set_confidence(value); });
   command.flags.toggle("--no-stated-uncertainty",
                        "Leave out the uncertainties that lubricant and surface state.",
-                       [flags] { flags->leaves_out_stated = true; });
-  const auto check = command.check;
-  command.check = [flags, check](Complaints& complaints) {
-    check(complaints);
+                       [&request] { request.set_ignore_stated_uncertainties(true); });
+  add_check(command, [flags](Complaints& complaints) {
     if (flags->objectives.size() > 1) {
       complaints.emplace_back("give one --least or --most; `campaigns pareto` takes two");
     }
+  });
+  command.run = [flags, uncertainties](const CommonOptions& options) {
+    static constexpr Decision<Request, v1::RankCandidatesResponse> kDecision{
+        [](Request& wanted) { return std::vector{wanted.mutable_objective()->mutable_figure()}; },
+        &Connection::rank_candidates, ranking_answer_text};
+    Request& wanted = flags->request;
+    *wanted.mutable_uncertainties() = {uncertainties->begin(), uncertainties->end()};
+    if (!flags->objectives.empty()) *wanted.mutable_objective() = flags->objectives.front();
+    const auto answer = decided(kDecision, flags->campaign, wanted, options);
+    return answer.candidates().empty() ? kExitFailed : kExitOk;
   };
   return command;
 }
 
 Command pareto_command() {
-  const auto flags = std::make_shared<DecisionFlags>();
-  Command command = decision_command(
-      "campaigns pareto", "find the candidates that no other one beats in two figures",
-      "Prints the Pareto front of a campaign, finished or not. One figure alone stands beside the "
-      "mean inefficiency, of a rig beside the traction coefficient, of which less is better.",
-      "tribodyn campaigns pareto 12 --most film_ratio_minimum:min", run_pareto, flags);
+  using Request = v1::FindParetoCandidatesRequest;
+  const auto flags = std::make_shared<DecisionFlags<Request>>();
+  Command command = one_campaign_command(
+      {"campaigns pareto", "find the candidates that no other one beats in two figures",
+       "Prints the Pareto front of a campaign, finished or not. One figure alone stands beside the "
+       "mean inefficiency, of a rig beside the traction coefficient, of which less is better.",
+       "tribodyn campaigns pareto 12 --most film_ratio_minimum:min"},
+      flags->campaign);
   command.flags.group("Options");
-  add_objective_flags(command.flags, flags);
-  add_selection_flags(command.flags, flags);
-  const auto check = command.check;
-  command.check = [flags, check](Complaints& complaints) {
-    check(complaints);
+  add_objective_flags(command.flags, flags->objectives);
+  add_selection_flags(command.flags, flags->request);
+  add_check(command, [flags](Complaints& complaints) {
     if (flags->objectives.empty() || flags->objectives.size() > 2) {
       complaints.emplace_back("give one or two of --least FIGURE and --most FIGURE");
     }
+  });
+  command.run = [flags](const CommonOptions& options) {
+    static constexpr Decision<Request, v1::FindParetoCandidatesResponse> kDecision{
+        [](Request& wanted) {
+          return std::vector{wanted.mutable_first()->mutable_figure(),
+                             wanted.mutable_second()->mutable_figure()};
+        },
+        &Connection::find_pareto_candidates, front_answer_text};
+    Request& wanted = flags->request;
+    *wanted.mutable_second() = flags->objectives.back();
+    if (flags->objectives.size() == 2) *wanted.mutable_first() = flags->objectives.front();
+    const auto answer = decided(kDecision, flags->campaign, wanted, options);
+    return answer.candidates().empty() ? kExitFailed : kExitOk;
   };
   return command;
 }
 
 Command effects_command() {
-  const auto flags = std::make_shared<DecisionFlags>();
-  Command command = decision_command(
-      "campaigns effects", "estimate what columns of the candidates do to a figure",
-      "Prints the main effects of parameters and of columns that ride along, such as the "
-      "concentration of an additive, on a figure, with their intervals: from the lowest value to "
-      "the highest one, or from the most frequent text to another one.",
-      "tribodyn campaigns effects 12", run_effects, flags);
+  using Request = v1::EstimateCandidateEffectsRequest;
+  const auto flags = std::make_shared<DecisionFlags<Request>>();
+  Command command = one_campaign_command(
+      {"campaigns effects", "estimate what columns of the candidates do to a figure",
+       "Prints the main effects of parameters and of columns that ride along, such as the "
+       "concentration of an additive, on a figure, with their intervals: from the lowest value to "
+       "the highest one, or from the most frequent text to another one.",
+       "tribodyn campaigns effects 12"},
+      flags->campaign);
   command.examples.emplace_back(
       "tribodyn campaigns effects 12 --figure film_ratio_minimum:min --columns concentration");
   command.flags.group("Options");
+  Request& request = flags->request;
+  request.set_coverage(0.95);
   Flag& figure =
       command.flags.raw("--figure", "FIGURE",
                         "The figure. Default: the mean inefficiency, of a rig the traction "
                         "coefficient.");
-  figure.read = [flags](const std::vector<std::string>& texts, Complaints& complaints) {
-    read_candidate_figure("--figure", texts.back(), flags->figure, complaints);
+  figure.read = [&request](const std::vector<std::string>& texts, Complaints& complaints) {
+    read_candidate_figure("--figure", texts.back(), *request.mutable_figure(), complaints);
   };
   command.flags.texts("--columns", "NAME",
                       "Columns of the candidates, separated by commas. Default: all.",
-                      [flags](const std::string& name) { flags->columns.push_back(name); });
-  add_selection_flags(command.flags, flags);
+                      [&request](const std::string& name) { request.add_columns(name); });
+  add_selection_flags(command.flags, request);
   command.flags.number("--coverage", {"-", "0.5 to 0.9999", "0.95"}, "Probability of the intervals",
-                       [flags](double value) { flags->confidence = value; });
+                       [&request](double value) { request.set_coverage(value); });
+  command.run = [flags](const CommonOptions& options) {
+    static constexpr Decision<Request, v1::EstimateCandidateEffectsResponse> kDecision{
+        [](Request& wanted) { return std::vector{wanted.mutable_figure()}; },
+        &Connection::estimate_candidate_effects, effects_answer_text};
+    decided(kDecision, flags->campaign, flags->request, options);
+    return kExitOk;
+  };
   return command;
 }
 
+/// A candidate to promote.
+struct PromotionFlags {
+  v1::PromoteCandidateRequest request;
+  std::string campaign;
+  bool has_candidate = false;
+};
+
+int run_promote(PromotionFlags& flags, const CommonOptions& options) {
+  flags.request.set_name(flags.campaign);
+  const v1::PromoteCandidateResponse answer = options.connect().promote_candidate(flags.request);
+  if (options.output_format == OutputFormat::kJson) {
+    std::cout << json_text(answer);
+    return kExitOk;
+  }
+  const char* verb = flags.request.validate_only() ? "would create " : "created ";
+  if (answer.has_lubricant()) std::cout << verb << printable(answer.lubricant().name()) << "\n";
+  if (answer.has_surface()) std::cout << verb << printable(answer.surface().name()) << "\n";
+  return kExitOk;
+}
+
 Command promote_command() {
-  const auto flags = std::make_shared<DecisionFlags>();
-  Command command = decision_command(
-      "campaigns promote", "make a candidate a lubricant",
-      "Makes a candidate of a campaign a lubricant, and a surface where candidates have surface "
-      "parameters of their own. They have the numbers with which the campaign computed; their "
-      "provenance names campaign, candidate and base.",
-      "tribodyn campaigns promote 12 --candidate 3 --lubricant best-oil --surface best-film",
-      run_promote, flags);
+  const auto flags = std::make_shared<PromotionFlags>();
+  Command command = one_campaign_command(
+      {"campaigns promote", "make a candidate a lubricant",
+       "Makes a candidate of a campaign a lubricant, and a surface where candidates have surface "
+       "parameters of their own. They have the numbers with which the campaign computed; their "
+       "provenance names campaign, candidate and base.",
+       "tribodyn campaigns promote 12 --candidate 3 --lubricant best-oil --surface best-film"},
+      flags->campaign);
   command.flags.group("Options");
   command.flags.whole_number("--candidate", {"-", "0 to the last one"},
                              "Number of the candidate, as `campaigns rank` prints it",
                              [flags](int value) {
-                               flags->promotion.set_candidate(value);
+                               flags->request.set_candidate(value);
                                flags->has_candidate = true;
                              });
   command.flags.text("--lubricant", "ID", "Id of the new lubricant.",
-                     [flags](const std::string& id) { flags->promotion.set_lubricant_id(id); });
+                     [flags](const std::string& id) { flags->request.set_lubricant_id(id); });
   command.flags.text("--surface", "ID",
                      "Id of the new surface, where candidates have surface parameters.",
-                     [flags](const std::string& id) { flags->promotion.set_surface_id(id); });
+                     [flags](const std::string& id) { flags->request.set_surface_id(id); });
   command.flags.text("--title", "TEXT", "Name for people. Default: that of the candidate.",
-                     [flags](const std::string& text) { flags->promotion.set_display_name(text); });
+                     [flags](const std::string& text) { flags->request.set_display_name(text); });
   command.flags.toggle("--validate-only", "Check everything and show the outcome; write nothing.",
-                       [flags] { flags->promotion.set_validate_only(true); });
-  const auto check = command.check;
-  command.check = [flags, check](Complaints& complaints) {
-    check(complaints);
+                       [flags] { flags->request.set_validate_only(true); });
+  add_check(command, [flags](Complaints& complaints) {
     if (!flags->has_candidate) complaints.emplace_back("--candidate is missing");
-  };
+  });
+  command.run = [flags](const CommonOptions& options) { return run_promote(*flags, options); };
   return command;
 }
 

@@ -5,8 +5,6 @@
 
 #include "client/cpp/commands/resource_writes.h"
 #include "client/cpp/resources/candidate_table.h"
-#include "client/cpp/resources/edits.h"
-#include "client/cpp/resources/kind.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
 
@@ -24,13 +22,9 @@ void read_uncertainty(const std::string& text, std::vector<v1::ParameterUncertai
   }
   const std::string word = text.substr(0, equals);
   std::string value = text.substr(equals + 1), wrong;
-  const google::protobuf::FieldDescriptor* field =
-      find_parameter(kind_of(*v1::Surface::descriptor()), word, wrong);
+  const google::protobuf::FieldDescriptor* field = find_candidate_parameter(word, wrong);
   if (field == nullptr) {
-    field = find_parameter(kind_of(*v1::Lubricant::descriptor()), word, wrong);
-  }
-  if (field == nullptr) {
-    complaints.push_back(start + wrong);
+    complaints.push_back("--uncertainty: " + wrong);
     return;
   }
   const bool is_relative = value.ends_with("%");

@@ -1,7 +1,7 @@
-#include <algorithm>
 #include <iostream>
 #include <memory>
 
+#include "client/cpp/commands/condition_flags.h"
 #include "client/cpp/commands/result_files.h"
 #include "client/cpp/commands/scenario.h"
 #include "client/cpp/plot/comparison_plot.h"
@@ -12,12 +12,9 @@
 namespace tribodyn::client {
 namespace {
 
-/// The request, and what all of its conditions have in common.
 struct CompareFlags {
-  v1::ComparePointsRequest request;
-  std::vector<double> speeds, sumps;
-  std::vector<double> speed_weights, sump_weights;
-  v1::PointCondition common;
+  v1::ComparePointsRequest request;  ///< without conditions
+  ConditionFlags conditions;
   std::string plot_path;
 };
 
@@ -31,40 +28,8 @@ void add_compare_flags(FlagList& list, CompareFlags& flags) {
                request.add_lubricants(resource_name("lubricants", name));
              })
       .collection = "lubricants";
-  list.group("Conditions (every speed at every sump temperature)");
-  list.numbers("--speed-kilometres-per-hour,--speed,--speeds", {"km/h", "0.1 to 400", "60"},
-               "Vehicle speeds separated by commas",
-               [&flags](double value) { flags.speeds.push_back(value); });
-  list.numbers("--condition-weights,--weights", {"-", "1e-9 to 1e9", "equal"},
-               "Weights of the speeds in the mean, one for each",
-               [&flags](double value) { flags.speed_weights.push_back(value); });
-  list.number("--ascent-angle-degrees,--ascent", {"degrees", "-45 to 45", "0"},
-              "Road slope, also in percent: 6%",
-              [&flags](double value) { flags.common.set_ascent_angle_degrees(value); });
-  list.numbers("--sump-temperature-celsius,--sump,--sumps", {"C", "-70 to 200", "40"},
-               "Temperatures of the oil bath separated by commas",
-               [&flags](double value) { flags.sumps.push_back(value); });
-  list.numbers("--sump-weights", {"-", "1e-9 to 1e9", "equal"},
-               "Weights of the temperatures of the oil bath in the mean, one for each",
-               [&flags](double value) { flags.sump_weights.push_back(value); });
-  list.number("--inlet-temperature-rise-kelvin", {"K", "0 to 300", "20"},
-              "Temperature rise from the oil bath to the inlet of the contact (eq 14)",
-              [&flags](double value) { flags.common.set_inlet_temperature_rise_kelvin(value); });
-  list.text("--gear-set", "NAME", "Gear set with its driveline. Default: reference-axle.",
-            [&request](const std::string& name) {
-              request.set_gear_set(resource_name("gearSets", name));
-            })
-      .collection = "gearSets";
-  list.text("--surface", "NAME", "Surface: composite roughness of the flanks. Default: run-in.",
-            [&request](const std::string& name) {
-              request.set_surface(resource_name("surfaces", name));
-            })
-      .collection = "surfaces";
-  list.text("--vehicle", "NAME", "Vehicle: road load. Default: passenger-car.",
-            [&request](const std::string& name) {
-              request.set_vehicle(resource_name("vehicles", name));
-            })
-      .collection = "vehicles";
+  add_condition_flags(list, SumpCount::kSeveral, flags.conditions);
+  add_hardware_flags(list, "Surface: composite roughness of the flanks.", request);
   list.choice(
           "--condition", {"fresh", "sheared"},
           "fresh: the lubricants as they are stated; sheared: as they are after the shear test, "
@@ -72,49 +37,19 @@ void add_compare_flags(FlagList& list, CompareFlags& flags) {
           [&request](int index) { request.set_sheared_lubricant(index == 1); })
       .field = "sheared_lubricant";
   list.group("Uncertainty");
-  list.number("--sump-temperature-uncertainty-kelvin,--sump-uncertainty", {"K", "0 to 100", "0"},
-              "Standard uncertainty of the temperature of the oil bath",
-              [&request](double value) { request.set_sump_temperature_uncertainty_kelvin(value); });
-  list.number(
-      "--inlet-temperature-rise-uncertainty-kelvin", {"K", "0 to 100", "0"},
-      "Standard uncertainty of the temperature rise to the inlet",
-      [&request](double value) { request.set_inlet_temperature_rise_uncertainty_kelvin(value); });
-  list.number("--estimate-correlation", {"-", "0 to 1", "0.5"},
-              "Correlation of the errors of estimates that one estimator made for lubricants of "
-              "one class of base oil",
-              [&request](double value) { request.set_estimate_correlation(value); });
+  add_input_uncertainty_flags(list, request);
   list.whole_number("--draws", {"draws", "19 to 1999", "199"}, "Draws of the inputs",
                     [&request](int value) { request.set_draws(value); });
-  list.number("--tolerance", {"-", "1e-8 to 0.01", "0.001"},
-              "Target of the relative solver error of every point",
-              [&request](double value) { request.set_tolerance(value); });
+  add_point_tolerance_flag(list, "0.001", request);
   add_model_flags(list, *request.mutable_model_options());
   list.group("Output");
   add_plot_flag(list, "Also draw the lubricants and their differences over speed as SVG.",
                 flags.plot_path);
 }
 
-/// Sets every speed at every sump temperature, and the products of their weights.
-void set_compared_conditions(const CompareFlags& flags, v1::ComparePointsRequest& request) {
-  const std::vector<double> speeds = flags.speeds.empty() ? std::vector{60.0} : flags.speeds;
-  const bool has_weights = !flags.speed_weights.empty() || !flags.sump_weights.empty();
-  const std::size_t sumps = std::max<std::size_t>(flags.sumps.size(), 1);
-  for (std::size_t j = 0; j < sumps; ++j) {
-    for (std::size_t i = 0; i < speeds.size(); ++i) {
-      v1::PointCondition& condition = *request.add_conditions();
-      condition = flags.common;
-      condition.set_speed_kilometres_per_hour(speeds[i]);
-      if (!flags.sumps.empty()) condition.set_sump_temperature_celsius(flags.sumps[j]);
-      if (!has_weights) continue;
-      request.add_condition_weights((flags.speed_weights.empty() ? 1 : flags.speed_weights[i]) *
-                                    (flags.sump_weights.empty() ? 1 : flags.sump_weights[j]));
-    }
-  }
-}
-
 int run_compare(CompareFlags& flags, const CommonOptions& options) {
   v1::ComparePointsRequest& request = flags.request;
-  set_compared_conditions(flags, request);
+  set_conditions(flags.conditions, request);
   const v1::ComparePointsResponse response = options.connect().compare_points(request);
   switch (options.output_format) {
     case OutputFormat::kTable:
@@ -158,16 +93,7 @@ Command compare_command() {
     if (flags->request.lubricants().empty()) {
       complaints.emplace_back("give lubricants: tribodyn compare A B");
     }
-    const auto check_weights = [&complaints](const char* flag, std::size_t weights,
-                                             std::size_t values, const std::string& noun) {
-      values = std::max<std::size_t>(values, 1);  // the default
-      if (weights == 0 || weights == values) return;
-      complaints.push_back(std::string(flag) + ": " + std::to_string(weights) + " weights of " +
-                           std::to_string(values) + " " + noun + "s; give one for each " + noun);
-    };
-    check_weights("--weights", flags->speed_weights.size(), flags->speeds.size(), "speed");
-    check_weights("--sump-weights", flags->sump_weights.size(), flags->sumps.size(),
-                  "sump temperature");
+    check_condition_flags(flags->conditions, complaints);
   };
   command.main_flags = {"--speed",   "--weights",      "--ascent",
                         "--sump",    "--sump-weights", "--gear-set",

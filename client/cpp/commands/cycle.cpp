@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -11,6 +12,7 @@
 #include "client/cpp/report/cycle_report.h"
 #include "client/cpp/resources/json_input.h"
 #include "client/cpp/text/csv.h"
+#include "client/cpp/text/nearest.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
 #include "tribodyn/client/error.h"
@@ -30,13 +32,26 @@ struct CycleFlags {
 const std::vector<std::string> kPlaceColumns{"time_seconds", "speed_kilometres_per_hour",
                                              "ascent_angle_degrees", "sump_temperature_celsius"};
 
+/// Returns the column that a header resembles, e.g. "time" or "speed (km/h)"; empty if none.
+std::string meant_column(const std::string& header) {
+  std::string word = header.substr(0, header.find_first_of(" (["));
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const std::string& each : kPlaceColumns) {
+    if (!word.empty() && each.starts_with(word)) return each;
+  }
+  return nearest(word, kPlaceColumns);
+}
+
 /// Returns the columns of kPlaceColumns in a header; -1: missing. Throws Failure.
 std::vector<int> place_columns(const std::string& path, const std::vector<std::string>& header) {
   std::vector<int> out(kPlaceColumns.size(), -1);
   for (std::size_t column = 0; column < header.size(); ++column) {
     const auto name = std::find(kPlaceColumns.begin(), kPlaceColumns.end(), header[column]);
     if (name == kPlaceColumns.end()) {
+      const std::string meant = meant_column(header[column]);
       throw Failure(kExitFailed, path + ": unknown column " + printable(header[column]) +
+                                     (meant.empty() ? "" : " (is " + meant + " meant?)") +
                                      "; allowed: " + joined(kPlaceColumns, ", "));
     }
     out[static_cast<std::size_t>(name - kPlaceColumns.begin())] = static_cast<int>(column);

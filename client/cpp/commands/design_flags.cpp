@@ -5,8 +5,6 @@
 #include <optional>
 
 #include "client/cpp/resources/candidate_table.h"
-#include "client/cpp/resources/edits.h"
-#include "client/cpp/resources/kind.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
 
@@ -18,13 +16,10 @@ using google::protobuf::FieldDescriptor;
 constexpr std::size_t kMostFactors = 30;  ///< parameters that differ in one call of EvaluatePoints
 
 const FieldDescriptor* parameter_of(const std::string& word, std::string& wrong) {
-  const FieldDescriptor* field = find_parameter(kind_of(*v1::Surface::descriptor()), word, wrong);
-  if (field == nullptr) {
-    field = find_parameter(kind_of(*v1::Lubricant::descriptor()), word, wrong);
-  }
+  const FieldDescriptor* field = find_candidate_parameter(word, wrong);
   const std::vector<const FieldDescriptor*> known = candidate_parameters();
   if (field != nullptr && std::find(known.begin(), known.end(), field) == known.end()) {
-    wrong = "is no parameter of candidates";
+    wrong = "'" + printable(word) + "' is no parameter of candidates";
     return nullptr;
   }
   return field;
@@ -43,7 +38,7 @@ void read_range(const std::string& flag, const std::string& text, bool is_logari
   std::string wrong;
   const FieldDescriptor* field = parameter_of(text.substr(0, equals), wrong);
   if (field == nullptr) {
-    complaints.push_back(start + wrong);
+    complaints.push_back(flag + ": " + wrong);
     return;
   }
   const std::string unit = unit_of_field(field->name());

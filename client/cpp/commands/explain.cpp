@@ -2,6 +2,7 @@
 #include <iostream>
 #include <memory>
 
+#include "client/cpp/commands/condition_flags.h"
 #include "client/cpp/commands/result_files.h"
 #include "client/cpp/commands/scenario.h"
 #include "client/cpp/plot/explanation_plot.h"
@@ -17,11 +18,9 @@ constexpr int kExplanationDraws = 99, kFewestDraws = 19;
 /// Points of one request, and combinations of the six groups.
 constexpr int kExplainedPoints = 64'000, kGroupCombinations = 64;
 
-/// The request, and what all of its conditions have in common.
 struct ExplainFlags {
-  v1::ExplainPointsRequest request;
-  std::vector<double> speeds;
-  v1::PointCondition common;
+  v1::ExplainPointsRequest request;  ///< without conditions
+  ConditionFlags conditions;
   std::string plot_path;
 };
 
@@ -38,43 +37,14 @@ void add_explain_flags(FlagList& list, ExplainFlags& flags) {
               request.set_other_lubricant(resource_name("lubricants", name));
             })
       .collection = "lubricants";
-  list.group("Conditions");
-  list.numbers("--speed-kilometres-per-hour,--speed,--speeds", {"km/h", "0.1 to 400", "60"},
-               "Vehicle speeds separated by commas",
-               [&flags](double value) { flags.speeds.push_back(value); });
-  list.numbers("--condition-weights,--weights", {"-", "1e-9 to 1e9", "equal"},
-               "Weights of the speeds in the mean, one for each",
-               [&request](double value) { request.add_condition_weights(value); });
-  list.number("--ascent-angle-degrees,--ascent", {"degrees", "-45 to 45", "0"},
-              "Road slope, also in percent: 6%",
-              [&flags](double value) { flags.common.set_ascent_angle_degrees(value); });
-  list.number("--sump-temperature-celsius,--sump", {"C", "-70 to 200", "40"},
-              "Temperature of the oil bath",
-              [&flags](double value) { flags.common.set_sump_temperature_celsius(value); });
-  list.number("--inlet-temperature-rise-kelvin", {"K", "0 to 300", "20"},
-              "Temperature rise from the oil bath to the inlet of the contact (eq 14)",
-              [&flags](double value) { flags.common.set_inlet_temperature_rise_kelvin(value); });
-  list.text("--gear-set", "NAME", "Gear set with its driveline. Default: reference-axle.",
-            [&request](const std::string& name) {
-              request.set_gear_set(resource_name("gearSets", name));
-            })
-      .collection = "gearSets";
-  list.text("--surface", "NAME", "Surface with its boundary film. Default: run-in.",
-            [&request](const std::string& name) {
-              request.set_surface(resource_name("surfaces", name));
-            })
-      .collection = "surfaces";
+  add_condition_flags(list, SumpCount::kOne, flags.conditions);
+  add_hardware_flags(list, "Surface with its boundary film.", request);
   list.text("--other-surface", "NAME",
             "Surface with the boundary film that B makes. Default: that of --surface.",
             [&request](const std::string& name) {
               request.set_other_surface(resource_name("surfaces", name));
             })
       .collection = "surfaces";
-  list.text("--vehicle", "NAME", "Vehicle: road load. Default: passenger-car.",
-            [&request](const std::string& name) {
-              request.set_vehicle(resource_name("vehicles", name));
-            })
-      .collection = "vehicles";
   list.choice(
           "--condition", {"fresh", "sheared"},
           "fresh: A as it is stated; sheared: as it is after the shear test, by KV100 after it. "
@@ -85,23 +55,11 @@ void add_explain_flags(FlagList& list, ExplainFlags& flags) {
               [&request](int index) { request.set_other_sheared_lubricant(index == 1); })
       .field = "other_sheared_lubricant";
   list.group("Uncertainty");
-  list.number("--sump-temperature-uncertainty-kelvin,--sump-uncertainty", {"K", "0 to 100", "0"},
-              "Standard uncertainty of the temperature of the oil bath",
-              [&request](double value) { request.set_sump_temperature_uncertainty_kelvin(value); });
-  list.number(
-      "--inlet-temperature-rise-uncertainty-kelvin", {"K", "0 to 100", "0"},
-      "Standard uncertainty of the temperature rise to the inlet",
-      [&request](double value) { request.set_inlet_temperature_rise_uncertainty_kelvin(value); });
-  list.number("--estimate-correlation", {"-", "0 to 1", "0.5"},
-              "Correlation of the errors of estimates that one estimator made for lubricants of "
-              "one class of base oil",
-              [&request](double value) { request.set_estimate_correlation(value); });
+  add_input_uncertainty_flags(list, request);
   list.whole_number("--draws",
                     {"draws", "19 to 1999", "99, from 11 speeds on as many as one request takes"},
                     "Draws of the inputs", [&request](int value) { request.set_draws(value); });
-  list.number("--tolerance", {"-", "1e-8 to 0.01", "0.0001"},
-              "Target of the relative solver error of every point",
-              [&request](double value) { request.set_tolerance(value); });
+  add_point_tolerance_flag(list, "0.0001", request);
   add_model_flags(list, *request.mutable_model_options());
   list.group("Output");
   add_plot_flag(list, "Also draw the shares as SVG.", flags.plot_path);
@@ -109,12 +67,7 @@ void add_explain_flags(FlagList& list, ExplainFlags& flags) {
 
 int run_explain(ExplainFlags& flags, const CommonOptions& options) {
   v1::ExplainPointsRequest& request = flags.request;
-  if (flags.speeds.empty()) flags.speeds.push_back(60);
-  for (const double speed : flags.speeds) {
-    v1::PointCondition& condition = *request.add_conditions();
-    condition = flags.common;
-    condition.set_speed_kilometres_per_hour(speed);
-  }
+  set_conditions(flags.conditions, request);
   if (request.draws() == 0) {
     const int most = kExplainedPoints / kGroupCombinations / request.conditions_size() - 1;
     request.set_draws(std::clamp(most, kFewestDraws, kExplanationDraws));
@@ -161,12 +114,7 @@ Command explain_command() {
     if (flags->request.other_lubricant().empty()) {
       complaints.emplace_back("give two lubricants: tribodyn explain A B");
     }
-    const std::size_t weights = static_cast<std::size_t>(flags->request.condition_weights_size());
-    const std::size_t speeds = flags->speeds.empty() ? 1 : flags->speeds.size();
-    if (weights != 0 && weights != speeds) {
-      complaints.push_back("--weights: " + std::to_string(weights) + " weights of " +
-                           std::to_string(speeds) + " speeds; give one for each speed");
-    }
+    check_condition_flags(flags->conditions, complaints);
   };
   command.main_flags = {"--speed",   "--weights",       "--ascent",  "--sump", "--gear-set",
                         "--surface", "--other-surface", "--vehicle", "--plot"};

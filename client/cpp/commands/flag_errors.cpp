@@ -22,10 +22,11 @@ struct FlagValue {
 
 /// Returns the innermost part of a path that a flag sets: "density_15_..." for
 /// "lubricant.measurements.density_15_...", "brookfield_viscosities" for
-/// "...brookfield_viscosities[1].temperature_celsius". The first part of the path is the resource.
+/// "...brookfield_viscosities[1].temperature_celsius". The first part of the path is the resource,
+/// or else the field, as of "constraints[1].figure.column": it comes last.
 FlagValue flag_value_of(const std::string& path, const TypedFlags& typed) {
   const std::vector<std::string> parts = split(path, '.');
-  for (std::size_t i = parts.size(); i-- > (parts.size() > 1 ? 1U : 0U);) {
+  for (std::size_t i = parts.size(); i-- > 0;) {
     const std::size_t bracket = parts[i].find('[');
     const auto found = typed.find(parts[i].substr(0, bracket));
     if (found == typed.end()) continue;
@@ -74,6 +75,10 @@ std::string described_by_flag(const FieldViolation& violation, const FlagValue& 
   const bool same_unit = flag.bare_unit == unit || unit_ratio(flag.bare_unit, unit) == 1.0;
   if (!unit.empty() && !typed.empty() && !(same_unit && is_bare)) text += " " + typed;
   const bool names_field = violation.description.rfind(leaf + " ", 0) == 0;
+  // A sentence about a text, such as the name of a column, that does not quote it.
+  const bool is_unquoted = unit.empty() && !is_bare && !names_field &&
+                           violation.description.find(typed) == std::string::npos;
+  if (is_unquoted) text += " " + typed;
   text += names_field ? violation.description.substr(leaf.size()) : ": " + violation.description;
   const auto range = allowed_range_of(violation.description);
   if (!range || typed.empty()) return text;

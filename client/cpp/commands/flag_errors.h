@@ -11,7 +11,7 @@ namespace tribodyn::client {
 
 /// A flag as the user typed it.
 struct TypedFlag {
-  std::string name;                ///< e.g. "--density15"
+  std::string name;                ///< e.g. "--density15"; NAME of a positional
   std::vector<std::string> texts;  ///< its values
   std::string bare_unit;           ///< unit of a number without one
 };

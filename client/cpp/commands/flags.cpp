@@ -27,6 +27,17 @@ std::string value_name_of(const NumberText& text) {
   return text.unit == "-" ? "NUMBER" : text.unit;
 }
 
+/// Returns what is wrong with 0 where the allowed range begins above it; empty if it is allowed.
+/// A whole number that is 0 is not set for the server, which takes the default.
+std::string complaint_of_zero(const NumberText& text, const std::string& description) {
+  const bool has_meaning =
+      text.standard.starts_with("0") || description.find("0: ") != std::string::npos;
+  int lowest = 0;
+  std::from_chars(text.range.data(), text.range.data() + text.range.size(), lowest);
+  if (has_meaning || lowest <= 0) return "";
+  return "is not within " + text.range + (text.unit == "-" ? "" : " " + text.unit);
+}
+
 }  // namespace
 
 std::string flag_of_field(const std::string& field_path) {
@@ -79,8 +90,8 @@ void FlagList::number(const std::string& names, const NumberText& text,
   flags_.back().bare_unit = unit;
 }
 
-void FlagList::numbers(const std::string& names, const NumberText& text,
-                       const std::string& description, const std::function<void(double)>& add) {
+Flag& FlagList::numbers(const std::string& names, const NumberText& text,
+                        const std::string& description, const std::function<void(double)>& add) {
   const std::string unit = text.unit == "-" ? "" : text.unit;
   Flag flag{names, value_name_of(text), described(description, text), group_};
   flag.is_repeatable = true;
@@ -100,20 +111,23 @@ void FlagList::numbers(const std::string& names, const NumberText& text,
     }
   };
   flags_.push_back(std::move(flag));
+  return flags_.back();
 }
 
 void FlagList::whole_number(const std::string& names, const NumberText& text,
                             const std::string& description, const std::function<void(int)>& set) {
   const std::string name = names.substr(0, names.find(','));
   add(names, value_name_of(text), described(description, text),
-      [=](const std::string& given, Complaints& complaints) {
+      [=, zero = complaint_of_zero(text, description)](const std::string& given,
+                                                       Complaints& complaints) {
         int value = 0;
         const char* last = given.data() + given.size();
         const auto [end, error] = std::from_chars(given.data(), last, value);
-        if (error == std::errc() && end == last) {
+        const bool is_whole = error == std::errc() && end == last;
+        if (is_whole && (value != 0 || zero.empty())) {
           set(value);
         } else {
-          complaints.push_back(complaint(name, given, "is not a whole number"));
+          complaints.push_back(complaint(name, given, is_whole ? zero : "is not a whole number"));
         }
       });
 }

@@ -58,8 +58,8 @@ class FlagList {
   void number(const std::string& names, const NumberText& text, const std::string& description,
               const std::function<void(double)>& set);
   /// Adds a list of quantities separated by commas; the flag may be repeated.
-  void numbers(const std::string& names, const NumberText& text, const std::string& description,
-               const std::function<void(double)>& add);
+  Flag& numbers(const std::string& names, const NumberText& text, const std::string& description,
+                const std::function<void(double)>& add);
   void whole_number(const std::string& names, const NumberText& text,
                     const std::string& description, const std::function<void(int)>& set);
   Flag& text(const std::string& names, const std::string& value_name,

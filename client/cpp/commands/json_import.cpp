@@ -66,6 +66,12 @@ std::string column_of(const FileResource& row, const std::string& path) {
   return "";
 }
 
+std::size_t leading_number(const std::string& text) {
+  std::size_t out = 0;
+  std::from_chars(text.data(), text.data() + text.size(), out);
+  return out;
+}
+
 /// Adds e.g. "fluids.csv row 3 column density_...: sentence" or "fluids.json, lubricants[2]:
 /// sentence".
 void add_complaint(const FileResource& about, const std::string& path, const std::string& sentence,
@@ -139,7 +145,11 @@ JsonImport::Verdict JsonImport::verdict(const ServiceError& refusal) const {
     }
     if (!index || index->value >= resources_.size()) {
       says_all = false;
-      wrong.add(each.field == "*" ? each.description : each.field + ": " + each.description);
+      if (each.field == "*") {  // "51 more violations"
+        wrong.add_unlisted(leading_number(each.description));
+      } else {
+        wrong.add(each.field + ": " + each.description);
+      }
       continue;
     }
     is_wrong[index->value] = true;

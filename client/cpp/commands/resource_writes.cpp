@@ -41,7 +41,12 @@ void add_name(Command& command, const ResourceKind& kind, const std::shared_ptr<
   command.flags.group("Arguments");
   Flag& name = command.flags.text("name", "NAME", description,
                                   [flags](const std::string& text) { flags->name = text; });
-  if (exists) name.collection = kind.collection;
+  if (exists) {
+    name.collection = kind.collection;
+  } else {
+    name.field = kind.singular + "_id";  // "lubricant_id", of the request
+    std::replace(name.field.begin(), name.field.end(), ' ', '_');
+  }
 }
 
 void add_write_flags(Command& command, const std::shared_ptr<WriteFlags>& flags,

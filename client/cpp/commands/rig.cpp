@@ -59,24 +59,11 @@ void add_rig_flags(FlagList& list, RigFlags& flags, const RigCommand& rig) {
              })
       .collection = "lubricants";
   list.group("Rig (lists: every combination is a condition)");
-  const auto numbers = [&](const char* names, const NumberText& text, const char* description,
-                           std::vector<double> RigSettings::*values) {
-    list.numbers(names, text, description,
-                 [&flags, values](double value) { (flags.given.*values).push_back(value); });
-  };
-  const std::string load = significant(rig.settings.loads.front(), 4);
-  numbers("--load-newtons,--load", {"N", "1e-6 to 1e6", load}, "Normal loads", &RigSettings::loads);
-  numbers("--mean-pressure-pascals,--pressure", {"Pa", "1e4 to 1e11", "none"},
-          "Mean pressures of the dry contact by Hertz, in place of loads, e.g. 0.8GPa",
-          &RigSettings::mean_pressures);
-  numbers("--entrainment-speed-metres-per-second,--speed", {"m/s", "1e-6 to 1e3", rig.speeds_text},
-          "Mean speeds of both surfaces", &RigSettings::speeds);
-  numbers("--slide-roll-ratio-percent,--slide-roll-ratio,--srr",
-          {"%", "-200 to 200", rig.slides_text},
-          "Differences of the speeds over their mean, positive where the ball is faster",
-          &RigSettings::slide_roll_ratios);
-  numbers("--supply-temperature-celsius,--temperature", {"C", "-70 to 200", "40"},
-          "Temperatures of the oil at the inlet", &RigSettings::temperatures);
+  add_rig_setting_flags(
+      list,
+      {"--entrainment-speed-metres-per-second,--speed", significant(rig.settings.loads.front(), 4),
+       rig.speeds_text, rig.slides_text, "40"},
+      flags.given);
   v1::EvaluateRigRequest& request = flags.request;
   request = machine_of(rig).request;
   list.number("--radius-x-metres,--radius", {"m", "1e-5 to 1e4", significant(rig.radius, 5)},
@@ -354,19 +341,6 @@ void set_disc(const std::string& material, v1::EvaluateRigRequest& request) {
 RigMachine rig_machine(const std::string& command) {
   if (command == "film") return machine_of(rig_of_film());
   return machine_of(command == "stribeck" ? rig_of_stribeck() : rig_of_traction());
-}
-
-v1::RigGrid grid_of(const RigSettings& settings) {
-  v1::RigGrid grid;
-  const auto set = [](const std::vector<double>& values, auto& list) {
-    list = {values.begin(), values.end()};
-  };
-  set(settings.temperatures, *grid.mutable_supply_temperatures_celsius());
-  set(settings.loads, *grid.mutable_loads_newtons());
-  set(settings.mean_pressures, *grid.mutable_mean_pressures_pascals());
-  set(settings.speeds, *grid.mutable_entrainment_speeds_metres_per_second());
-  set(settings.slide_roll_ratios, *grid.mutable_slide_roll_ratios_percent());
-  return grid;
 }
 
 Command traction_command() { return rig_command(rig_of_traction()); }

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "client/cpp/commands/flags.h"
 #include "client/cpp/commands/rig_map.h"
 #include "tribodyn/v1/rigs.pb.h"
 
@@ -18,6 +19,14 @@ RigMachine rig_machine(const std::string& command);
 
 /// Makes the disc one of "steel" or "glass".
 void set_disc(const std::string& material, v1::EvaluateRigRequest& request);
+
+/// Names and defaults of the flags that list what a rig sets, where commands differ in them.
+struct RigSettingTexts {
+  const char* speed_names;
+  std::string load, speeds, slide_roll_ratios, temperature;  ///< defaults in words
+};
+/// Adds a flag for each list of settings; they write to `given`.
+void add_rig_setting_flags(FlagList& list, const RigSettingTexts& texts, RigSettings& given);
 
 /// Returns every combination of the settings.
 v1::RigGrid grid_of(const RigSettings& settings);

@@ -45,24 +45,11 @@ void add_screen_rig_flags(FlagList& list, ScreenRigFlags& flags) {
       "least traction, on the rig for films by the thickest film. --surface smooth: without "
       "roughness.",
       [&flags](int index) { flags.machine = kMachines[static_cast<std::size_t>(index)]; });
-  const auto numbers = [&](const char* names, const NumberText& text, const char* description,
-                           std::vector<double> RigSettings::*values) {
-    list.numbers(names, text, description,
-                 [&flags, values](double value) { (flags.given.*values).push_back(value); });
-  };
   const char* usual = "that of the rig";
-  numbers("--load-newtons,--load", {"N", "1e-6 to 1e6", usual}, "Normal loads",
-          &RigSettings::loads);
-  numbers("--mean-pressure-pascals,--pressure", {"Pa", "1e4 to 1e11", "none"},
-          "Mean pressures of the dry contact by Hertz, in place of loads, e.g. 0.8GPa",
-          &RigSettings::mean_pressures);
-  numbers("--entrainment-speed-metres-per-second,--entrainment-speed",
-          {"m/s", "1e-6 to 1e3", usual}, "Mean speeds of both surfaces", &RigSettings::speeds);
-  numbers("--slide-roll-ratio-percent,--slide-roll-ratio,--srr", {"%", "-200 to 200", usual},
-          "Differences of the speeds over their mean, positive where the ball is faster",
-          &RigSettings::slide_roll_ratios);
-  numbers("--supply-temperature-celsius,--temperature", {"C", "-70 to 200", usual},
-          "Temperatures of the oil at the inlet", &RigSettings::temperatures);
+  add_rig_setting_flags(
+      list,
+      {"--entrainment-speed-metres-per-second,--entrainment-speed", usual, usual, usual, usual},
+      flags.given);
   list.number("--radius-x-metres,--radius", {"m", "1e-5 to 1e4", usual},
               "Radius of the ball, e.g. 12.7mm; of a ring: along the motion",
               [&flags](double value) { flags.radius_x = value; });

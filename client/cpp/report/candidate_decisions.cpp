@@ -22,6 +22,17 @@ std::string figure_text(const v1::CandidateFigure& figure) {
   }
 }
 
+std::string reason_text(v1::ColumnWithoutEffect::Reason reason) {
+  switch (reason) {
+    case v1::ColumnWithoutEffect::CONSTANT:
+      return "the same for all";
+    case v1::ColumnWithoutEffect::TOO_MANY_TEXTS:
+      return "too many different texts";
+    default:
+      return "follows from the columns before it";
+  }
+}
+
 /// Returns what became of the candidates that are not in the table.
 template <class Response>
 std::string others_text(const Response& answer) {
@@ -187,8 +198,7 @@ std::string effects_answer_text(const v1::EstimateCandidateEffectsRequest& reque
       }
       std::vector<std::string> left_out;
       for (const v1::ColumnWithoutEffect& each : answer.left_out()) {
-        left_out.push_back(each.column() + " (" +
-                           v1::ColumnWithoutEffect::Reason_Name(each.reason()) + ")");
+        left_out.push_back(each.column() + " (" + reason_text(each.reason()) + ")");
       }
       return table.text() +
              remarks_text(

@@ -8,10 +8,13 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "client/cpp/failure.h"
 #include "client/cpp/report/inputs.h"
+#include "client/cpp/resources/edits.h"
 #include "client/cpp/resources/row_table.h"
+#include "client/cpp/text/nearest.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
 
@@ -395,6 +398,21 @@ std::vector<const FieldDescriptor*> candidate_parameters() {
     if (is_parameter(column)) out.push_back(column.field);
   }
   return out;
+}
+
+const FieldDescriptor* find_candidate_parameter(const std::string& word, std::string& wrong) {
+  std::vector<std::string> words;
+  for (const auto* type : {v1::Surface::descriptor(), v1::Lubricant::descriptor()}) {
+    const ResourceKind& kind = kind_of(*type);
+    const std::string owner = kind.singular + ".";
+    const std::string own = word.starts_with(owner) ? word.substr(owner.size()) : word;
+    if (const FieldDescriptor* field = find_parameter(kind, own, wrong)) return field;
+    for (std::string& each : parameter_words(kind)) words.push_back(std::move(each));
+  }
+  const std::string meant = nearest(word, words);
+  wrong = "'" + printable(word) + "' is not a parameter of a lubricant or a surface" +
+          (meant.empty() ? "" : " (is " + meant + " meant?)");
+  return nullptr;
 }
 
 double base_value(const CandidateBase& base, const FieldDescriptor& field) {

@@ -67,6 +67,12 @@ void characterise_candidates(Connection& connection, const CandidateBase& base,
 /// Returns the parameters of lubricants and surfaces.
 std::vector<const google::protobuf::FieldDescriptor*> candidate_parameters();
 
+/// Returns the parameter of lubricants or surfaces for a word as of find_parameter(), also after
+/// "lubricant." or "surface.". Returns null and sets `wrong` to a complaint with the nearest name of
+/// both if there is none.
+const google::protobuf::FieldDescriptor* find_candidate_parameter(const std::string& word,
+                                                                  std::string& wrong);
+
 /// Returns the value of a parameter of the base, in the unit of the field; NaN if it has none.
 double base_value(const CandidateBase& base, const google::protobuf::FieldDescriptor& field);
 

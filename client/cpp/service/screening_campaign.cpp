@@ -68,16 +68,9 @@ std::set<std::string> names_of_other_columns(const v1::Campaign& campaign) {
   return out;
 }
 
-/// Returns a header as the name of an attribute: "treat rate" becomes "treat_rate".
+/// Returns the name of an attribute for a header that no other column has.
 std::string attribute_name(const std::string& header, const v1::Campaign& campaign) {
-  std::string name;
-  for (const char c : header) {
-    const bool is_allowed = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-                            (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '.';
-    name += is_allowed ? c : '_';
-  }
-  name = name.substr(0, kLongestAttributeName);
-  if (name.empty()) name = "_";
+  const std::string name = attribute_text(header);
   const std::set<std::string> taken = names_of_other_columns(campaign);
   std::string out = name;
   for (int i = 2; taken.contains(out); ++i) {
@@ -202,6 +195,16 @@ CandidateTable candidates_of(const v1::Campaign& campaign) {
 }
 
 }  // namespace
+
+std::string attribute_text(const std::string& header) {
+  std::string out;
+  for (const char c : header.substr(0, kLongestAttributeName)) {
+    const bool is_allowed = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                            (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '.';
+    out += is_allowed ? c : '_';
+  }
+  return out.empty() ? "_" : out;
+}
 
 std::vector<std::size_t> accepted_candidates(const CandidateTable& table) {
   std::vector<std::size_t> out;

@@ -19,6 +19,9 @@ v1::Campaign campaign_without_candidates(const Screening& screening, const std::
 /// the candidates' names, carried columns and uncertainties as attributes.
 v1::Campaign campaign_of(const Screening& screening, const std::string& title);
 
+/// Returns a header as the name of an attribute: "treat rate" becomes "treat_rate".
+std::string attribute_text(const std::string& header);
+
 /// Returns the request that adds the candidates of a screening to a campaign. A parameter of the
 /// campaign that they do not state is as in the base; names go along if the campaign has names.
 v1::AppendCandidatesRequest further_candidates(const Screening& screening,

@@ -32,6 +32,14 @@ std::string nearest(const std::string& word, const std::vector<std::string>& kno
       best = candidate;
     }
   }
+  // Of a name in several words its beginning is near too: film-ratio for film-ratio-minimum.
+  const bool is_beginning = best.empty() && word.find_first_of("-_") != std::string::npos;
+  for (const std::string& candidate : known) {
+    const bool begins = candidate.size() > word.size() && candidate.starts_with(word) &&
+                        (candidate[word.size()] == '-' || candidate[word.size()] == '_');
+    const bool is_shorter = best.empty() || candidate.size() < best.size();
+    if (is_beginning && begins && is_shorter) best = candidate;
+  }
   return best;
 }
 
