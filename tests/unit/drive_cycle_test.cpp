@@ -74,6 +74,11 @@ double smooth_loss(const MapPlace& place) {
          (1 + 0.3 * std::exp(-resonance * resonance)) * (1 - 0.001 * (place[2] - 313));
 }
 
+/// A loss with ripples that no large box follows.
+double jagged_loss(const MapPlace& place) {
+  return smooth_loss(place) * (1 + 0.2 * std::sin(3 * place[0]) * std::sin(0.05 * place[1]));
+}
+
 TEST(LossMap, EnergyIsWithinTheStatedErrorOfThePointByPointIntegration) {
   for (const double last_sump : {313.0, 353.0}) {
     std::vector<MapReading> readings;
@@ -115,6 +120,46 @@ TEST(LossMap, ReadingsOfOnePlaceAreExact) {
   EXPECT_DOUBLE_EQ(map.energy(), 10 * smooth_loss(place));
   EXPECT_EQ(map.estimated_error(), 0);
   EXPECT_EQ(LossMap({}, {}).energy(), 0);
+}
+
+TEST(LossMap, OfScatteredReadingsTakesFewMorePointsThanTheyAre) {
+  constexpr int kReadings = 1500;
+  std::vector<MapReading> readings;
+  double exact = 0;
+  for (int i = 0; i < kReadings; ++i) {
+    const double turn = 0.6180339887 * i, other = 0.4142135624 * i;  // of no common period
+    const MapPlace place{1 + 37 * (turn - std::floor(turn)),
+                         800 * (other - std::floor(other)) - 400, 313};
+    readings.push_back({place, place[0]});
+    exact += jagged_loss(place) * place[0];
+  }
+  const LossMap map(readings,
+                    [](const std::vector<MapPlace>& places) {
+                      std::vector<double> out;
+                      for (const MapPlace& place : places) out.push_back(jagged_loss(place));
+                      return out;
+                    },
+                    {2e-3, 20'000});
+  EXPECT_LE(map.estimated_error(), 2e-3 * map.energy());
+  EXPECT_LE(std::abs(map.energy() - exact), map.estimated_error());
+  EXPECT_LT(map.points(), 2 * kReadings);
+}
+
+TEST(LossMap, SolvesReadingsInPlaceOfCornersWhereTheyAreFew) {
+  // In no box are more than two, and none reaches torque 0.
+  std::vector<MapReading> readings;
+  for (int i = 0; i < 8; ++i) readings.push_back({{1.0 + 4 * i, 800.0 - 100 * i, 313}, 1});
+  const LossMap map(readings, [](const std::vector<MapPlace>& places) {
+    std::vector<double> out;
+    for (const MapPlace& place : places) {
+      EXPECT_NEAR(place[1], 825 - 25 * place[0], 1e-9) << "no reading";
+      out.push_back(smooth_loss(place));
+    }
+    return out;
+  });
+  EXPECT_EQ(map.points(), 8);
+  EXPECT_EQ(map.estimated_error(), 0);
+  EXPECT_EQ(map.at(3), smooth_loss(readings[3].place));
 }
 
 TEST(LossMap, EndsWithoutANumberWhereAForceIsNone) {
