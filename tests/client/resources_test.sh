@@ -123,7 +123,7 @@ cp "$folder/out" rest.csv
 expect 0 lubricants list --order-by name --output csv
 tail -n +4 "$folder/out" | cmp -s - <(tail -n +2 rest.csv) || fail "a page token skips or repeats"
 expect 1 lubricants list --page-token nonsense
-err_has '--page-token: not a token'
+err_has '--page-token nonsense: not a token'
 expect 0 lubricants list --filter 'kv100 > 8.8 AND vi > 90 AND name = my-oil' --order-by kv40
 out_has '^my-oil '
 expect 1 lubricants list --filter 'kv10 > 8.8'
