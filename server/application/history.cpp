@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <google/protobuf/arena.h>
 
 #include <algorithm>
 #include <memory>
@@ -11,6 +10,7 @@
 #include "server/application/stored_history.h"
 #include "server/application/streams.h"
 #include "server/contract/constraints.h"
+#include "server/contract/parse_fields.h"
 #include "server/mapping/history_columns.h"
 #include "server/storage/history/pyramid.h"
 #include "server/support/sha256.h"
@@ -42,25 +42,21 @@ class HistorySource final : public ColumnSource<v1::ReadHistoryResponse> {
         shape_(std::move(shape)),
         window_(std::move(window)),
         input_warnings_(result.input_warnings()),
-        tag_(tag_of(input_hash, result)) {
+        origin_(fmt::format("{} {} {}", input_hash, result.model_version(), result.platform())) {
     rows_ = window_.end_row - window_.start_row;
     if (window_.maximum_points == 0 || rows_ <= window_.maximum_points) return;
     overview_ = overview(window_.start_row, window_.end_row, shape_.rows, window_.maximum_points);
     rows_ = 2 * overview_->pairs();
   }
 
-  std::string tag() const override { return tag_; }
-
- private:
-  /// Equal inputs give the same bits on the same platform and with the same model.
-  std::string tag_of(const std::string& input_hash, const v1::SimulationResult& result) const {
-    std::string all =
-        fmt::format("{} {} {} {} {} {}", input_hash, result.model_version(), result.platform(),
-                    window_.start_row, window_.end_row, window_.maximum_points);
+  std::string tag() const override {
+    std::string all = fmt::format("{} {} {} {}", origin_, window_.start_row, window_.end_row,
+                                  window_.maximum_points);
     for (const std::size_t place : window_.columns) all += ' ' + shape_.names[place];
     return sha256(all);
   }
 
+ private:
   void tell_schema(v1::HistorySchema& out) const override {
     for (const std::size_t place : window_.columns) {
       v1::HistorySchema::Column* column = out.add_columns();
@@ -93,7 +89,7 @@ class HistorySource final : public ColumnSource<v1::ReadHistoryResponse> {
   const HistoryShape shape_;
   const Window window_;
   const google::protobuf::RepeatedPtrField<v1::RangeWarning> input_warnings_;
-  const std::string tag_;
+  const std::string origin_;  // gives the same bits: inputs, model and platform
   std::optional<Overview> overview_;
 };
 
@@ -142,9 +138,12 @@ StreamOutcome<v1::ReadHistoryResponse> read_history(Application& application,
   Violations violations;
   auto rows = window(request, shape, violations);
   if (!rows) return invalid(violations);
-  google::protobuf::Arena arena;  // a result has hundreds of parts
-  auto& result = *google::protobuf::Arena::CreateMessage<v1::SimulationResult>(&arena);
-  result.ParseFromString(application.store.result(stored.id, call.limits).value_or(""));
+  v1::SimulationResult result;
+  parse_fields(
+      application.store.result(stored.id, call.limits).value_or(""),
+      {v1::SimulationResult::kInputWarningsFieldNumber,
+       v1::SimulationResult::kModelVersionFieldNumber, v1::SimulationResult::kPlatformFieldNumber},
+      result);
   return Source(std::make_shared<HistorySource>(application, request.name(), std::move(shape),
                                                 std::move(*rows), stored.input_hash, result, call));
 }

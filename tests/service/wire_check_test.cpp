@@ -1,4 +1,4 @@
-// Tests of the check of a request's bytes before it is parsed.
+// Tests of the check of a request's bytes before it is parsed, and of partial parsing.
 #include "server/application/wire_check.h"
 
 #include <gmock/gmock.h>
@@ -12,10 +12,12 @@
 #include <set>
 
 #include "server/application/element_limits.h"
+#include "server/contract/parse_fields.h"
 #include "server/resources/gear_set_checks.h"
 #include "tests/service/contract_methods.h"
 #include "tests/service/resource_calls.h"
 #include "tests/service/support.h"
+#include "tribodyn/v1/results.pb.h"
 
 namespace tribodyn::server {
 namespace {
@@ -259,6 +261,29 @@ TEST(Violations, KeepTheFirstAndCountAll) {
   more.push_back({"first", "x"});
   more.append(violations);
   EXPECT_EQ(more.size(), 100'001U);
+}
+
+TEST(ParseFields, ReadsTheFieldsThatAreNamedAndSkipsTheOthers) {
+  v1::SimulationResult whole;
+  whole.set_model_version("model");
+  whole.set_platform("platform");
+  whole.add_input_warnings()->set_code("FIRST");
+  whole.add_assumptions()->set_value("skipped");
+  v1::SimulationResult more;
+  more.add_input_warnings()->set_code("SECOND");
+  // The bytes of two messages in a row are those of both merged.
+  const std::string bytes = whole.SerializeAsString() + more.SerializeAsString();
+  v1::SimulationResult out;
+  ASSERT_TRUE(parse_fields(bytes,
+                           {v1::SimulationResult::kModelVersionFieldNumber,
+                            v1::SimulationResult::kInputWarningsFieldNumber},
+                           out));
+  EXPECT_EQ(out.model_version(), "model");
+  EXPECT_EQ(out.platform(), "");
+  EXPECT_EQ(out.assumptions_size(), 0);
+  ASSERT_EQ(out.input_warnings_size(), 2);
+  EXPECT_EQ(out.input_warnings(1).code(), "SECOND");
+  EXPECT_FALSE(parse_fields(bytes.substr(0, bytes.size() - 1), {1}, out)) << "broken off";
 }
 
 }  // namespace
