@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <exception>
+#include <memory>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -123,6 +124,16 @@ class GrantedSource final : public AnyMessageSource {
   bool has_ended_ = false;
 };
 
+/// Returns true if a call of the method may take about a millisecond or less.
+bool may_be_short(const Method& method) {
+  return method.lane == CallLane::kRead || method.is_short != nullptr;
+}
+
+/// Returns true if a call takes about a millisecond or less.
+bool is_short(const Method& method, const google::protobuf::Message& request) {
+  return method.lane == CallLane::kRead || (method.is_short != nullptr && method.is_short(request));
+}
+
 std::string reason_of(const google::rpc::Status& status) {
   google::rpc::ErrorInfo info;
   for (const auto& detail : status.details()) {
@@ -202,44 +213,61 @@ std::optional<google::rpc::Status> CallDispatcher::take_project_stream(
   return std::nullopt;
 }
 
-template <class Answer>
-Outcome<Answer> CallDispatcher::outcome_of(IncomingCall& call,
-                                           const Method::UseCase<Answer>& use_case) {
-  std::string names;
-  bool changes = call.method.scope > Scope::kRead;
-  Outcome<Answer> out = guarded<Answer>([&]() -> Outcome<Answer> {
+Outcome<Reply> CallDispatcher::accept(IncomingCall& call) {
+  Outcome<Reply> out = guarded<Reply>([&]() -> Outcome<Reply> {
     const CallLimits& limits = call.context.limits;
     if (limits.are_over()) return call_over(limits);
     if (auto refused = call.prepare()) return *std::move(refused);
-    const Reply request(call.method.request->New());
+    Reply request(call.method.request->New());
     if (auto refused = parse_request(call, *request)) return *std::move(refused);
     if (auto refused = enter_project(application_, *request, call.context)) {
       return *std::move(refused);
     }
     if (auto refused = take_project_call(call.context)) return *std::move(refused);
-    changes = changes && !validates_only(*request);
-    if (changes) names = audited_names(*request);
-    return use_case(application_, *request, call.context);
+    return request;
   });
   call.drop_request();
+  if (!out.ok()) record(call, out.error(), call.method.scope > Scope::kRead, "");
+  return out;
+}
+
+template <class Answer>
+Outcome<Answer> CallDispatcher::outcome_of(IncomingCall& call,
+                                           const google::protobuf::Message& request,
+                                           const Method::UseCase<Answer>& use_case) {
+  std::string names;
+  bool changes = call.method.scope > Scope::kRead;
+  Outcome<Answer> out = guarded<Answer>([&]() -> Outcome<Answer> {
+    changes = changes && !validates_only(request);
+    if (changes) names = audited_names(request);
+    if (call.context.limits.are_over()) return call_over(call.context.limits);
+    return use_case(application_, request, call.context);
+  });
   if constexpr (std::is_same_v<Answer, Reply>) {
     // A new simulation has its name from the server.
     if (changes && names.empty() && out.ok()) names = audited_names(*out.message());
   }
-  const google::rpc::Status status = out.ok() ? google::rpc::Status() : out.error();
-  if (changes || status.code() == google::rpc::PERMISSION_DENIED) {
-    application_.audit.record(call.context, call.method.descriptor->name(), status, names);
-  }
+  record(call, out.ok() ? google::rpc::Status() : out.error(), changes, names);
   return out;
 }
 
-void CallDispatcher::run(const IncomingCall& call, std::function<void()> task,
+void CallDispatcher::record(const IncomingCall& call, const google::rpc::Status& status,
+                            bool changes, const std::string& names) {
+  if (!changes && status.code() != google::rpc::PERMISSION_DENIED) return;
+  application_.audit.record(call.context, call.method.descriptor->name(), status, names);
+}
+
+void CallDispatcher::run(const IncomingCall& call, Task task,
                          const std::function<void(const google::rpc::Status&)>& refuse) {
   const std::size_t bytes = call.request_size();
   const CallLane lane = bytes > kUsualRequestBytes ? CallLane::kHeavy : call.method.lane;
-  const bool is_short = lane == CallLane::kRead && lanes_.is_empty(lane);
-  if (is_short && call.may_run_on_calling_thread() && run_here(task)) return;
-  if (lanes_.run(lane, bytes, task, payer(call.context))) return;
+  const bool may_run_here = lane == call.method.lane && may_be_short(call.method);
+  if (may_run_here && call.may_run_on_calling_thread() && lanes_.is_empty(lane)) {
+    bool is_answered = false;
+    if (run_here([&] { is_answered = task(true); }) && is_answered) return;
+  }
+  std::function<void()> queued = [own_task = std::move(task)] { own_task(false); };
+  if (lanes_.run(lane, bytes, queued, payer(call.context))) return;
   refuse(lane_full(lane));
 }
 
@@ -257,7 +285,20 @@ void CallDispatcher::answer(UnaryCall& call) {
   };
   if (auto refused = authorize(call)) return finish(*std::move(refused));
   run(
-      call, [this, &call, finish] { finish(outcome_of(call, call.method.answer)); },
+      call,
+      [this, &call, finish, request = std::make_shared<Reply>()](bool is_here) {
+        if (*request == nullptr) {
+          Outcome<Reply> accepted = accept(call);
+          if (!accepted.ok()) {
+            finish(accepted.error());
+            return true;
+          }
+          *request = std::move(accepted.message());
+        }
+        if (is_here && !is_short(call.method, **request)) return false;
+        finish(outcome_of(call, **request, call.method.answer));
+        return true;
+      },
       [&](const google::rpc::Status& refusal) { finish(refusal); });
 }
 
@@ -271,8 +312,11 @@ void CallDispatcher::open(StreamCall& call) {
   if (auto refused = take_stream(call.context, place)) return finish(*std::move(refused));
   run(
       call,
-      [this, &call, finish, kept = std::move(place)]() mutable {
-        Outcome<ReplySource> outcome = outcome_of(call, call.method.open);
+      [this, &call, finish, kept = std::move(place)](bool) mutable {
+        const Outcome<Reply> request = accept(call);
+        Outcome<ReplySource> outcome = request.ok()
+                                           ? outcome_of(call, *request.message(), call.method.open)
+                                           : Outcome<ReplySource>(request.error());
         if (outcome.ok()) {
           if (auto refused = take_project_stream(call.context, kept)) outcome = *std::move(refused);
         }
@@ -283,6 +327,7 @@ void CallDispatcher::open(StreamCall& call) {
         }
         kept = nullptr;  // its place is free before the answer
         finish(std::move(outcome));
+        return true;
       },
       [&](const google::rpc::Status& refusal) { finish(refusal); });
 }

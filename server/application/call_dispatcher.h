@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "server/application/authorizer.h"
@@ -96,7 +97,10 @@ class CallDispatcher {
   void ended(const IncomingCall& call, const google::rpc::Status& status);
 
  private:
-  void run(const IncomingCall& call, std::function<void()> task,
+  /// The rest of a call. `is_here`: it runs on the thread of the transport. Returns false, and has
+  /// not answered, if it would take too long for that thread.
+  using Task = std::function<bool(bool is_here)>;
+  void run(const IncomingCall& call, Task task,
            const std::function<void(const google::rpc::Status&)>& refuse);
   std::optional<google::rpc::Status> authorize(IncomingCall& call) const;
   /// Takes a place among the open streams of the caller, which the last copy of `place` frees.
@@ -112,8 +116,15 @@ class CallDispatcher {
   /// false if another task runs so: only one may, so that a slow disk blocks at most one thread of
   /// a transport.
   bool run_here(const std::function<void()>& task);
+  /// Checks the request, parses it and enters its project. Returns the request.
+  Outcome<Reply> accept(IncomingCall& call);
+  /// Returns what the use case makes of the request.
   template <class Answer>
-  Outcome<Answer> outcome_of(IncomingCall& call, const Method::UseCase<Answer>& use_case);
+  Outcome<Answer> outcome_of(IncomingCall& call, const google::protobuf::Message& request,
+                             const Method::UseCase<Answer>& use_case);
+  /// Writes a change, or the refusal of a permission, into the audit log.
+  void record(const IncomingCall& call, const google::rpc::Status& status, bool changes,
+              const std::string& names);
 
   Application& application_;
   const TimeLimits limits_;

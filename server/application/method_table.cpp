@@ -66,6 +66,18 @@ Method unary(Scope scope, CallLane lane,
           .open = nullptr};
 }
 
+/// A method of which some requests are short.
+template <class Request, class Response>
+Method unary(Scope scope, CallLane lane,
+             Outcome<Response> (*use_case)(Application&, const Request&, const CallContext&),
+             bool (*is_short)(const Request&)) {
+  Method out = unary(scope, lane, use_case);
+  out.is_short = [is_short](const Message& request) {
+    return is_short(static_cast<const Request&>(request));
+  };
+  return out;
+}
+
 template <class Request, class Response>
 Method stream(Scope scope, StreamOutcome<Response> (*use_case)(Application&, const Request&,
                                                                const CallContext&)) {
@@ -181,7 +193,7 @@ std::vector<Method> rows() {
 
       unary(Scope::kWrite, kWrite, create_simulation),
       unary(Scope::kRead, kRead, get_simulation),
-      unary(Scope::kRead, kSearch, list_simulations),
+      unary(Scope::kRead, kSearch, list_simulations, is_short_list),
       unary(Scope::kWrite, kWrite, cancel_simulation),
       unary(Scope::kWrite, kWrite, delete_simulation),
       unary(Scope::kWrite, kWrite, update_simulation),

@@ -34,6 +34,8 @@ struct Method {
   CallLane lane;              ///< of requests up to kUsualRequestBytes; larger ones take kHeavy
   UseCase<Reply> answer;      ///< null for a streaming method
   UseCase<ReplySource> open;  ///< null for a unary method
+  /// Returns true for a request that takes about a millisecond or less; null: as the lane says.
+  std::function<bool(const google::protobuf::Message& request)> is_short = nullptr;
 };
 
 /// Returns one row for every method of the contract. Throws std::logic_error if a method has none

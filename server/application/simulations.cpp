@@ -23,6 +23,7 @@
 #include "server/simulation/input_hash.h"
 #include "server/simulation/result_key.h"
 #include "server/simulation/simulation_inputs.h"
+#include "server/storage/checksum.h"
 #include "server/storage/properties.h"
 #include "server/storage/resource_lookup.h"
 #include "server/support/sha256.h"
@@ -31,6 +32,7 @@ namespace tribodyn::server {
 namespace {
 
 constexpr int kDefaultPageSize = 50;
+constexpr int kLongestShortPage = 100;  // simulations, some 10 us each
 
 static_assert(static_cast<int>(StoredState::kQueued) == v1::Simulation::QUEUED);
 static_assert(static_cast<int>(StoredState::kRunning) == v1::Simulation::RUNNING);
@@ -100,7 +102,8 @@ v1::Simulation preview(const SimulationInputs& inputs, const NewSimulation& simu
 
 /// Returns the etag (AIP-154). It changes with every part of a simulation that clients can change.
 std::string etag_of(const StoredSimulation& stored) {
-  return sha256(name_of(stored) + stored.request).substr(0, 16);
+  return fmt::format("{:016x}",
+                     static_cast<std::uint64_t>(checksum(name_of(stored) + stored.request)));
 }
 
 /// Returns the stored simulation as a message, without its result.
@@ -320,6 +323,13 @@ std::vector<Restriction> simulation_restrictions(const std::string& filter,
     }
   }
   return out;
+}
+
+bool is_short_list(const v1::ListSimulationsRequest& request) {
+  const bool has_results = request.view() != v1::SIMULATION_VIEW_UNSPECIFIED &&
+                           request.view() != v1::SIMULATION_VIEW_BASIC;
+  return request.filter().empty() && !has_results && request.read_mask().paths().empty() &&
+         request.page_size() <= kLongestShortPage;
 }
 
 Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,

@@ -18,6 +18,8 @@ Outcome<v1::Simulation> create_simulation(Application& application,
 Outcome<v1::Simulation> get_simulation(Application& application,
                                        const v1::GetSimulationRequest& request,
                                        const CallContext& call = {});
+/// Returns true for a list that reads one page of rows by an index and no results.
+bool is_short_list(const v1::ListSimulationsRequest& request);
 /// Returns a page of simulations, by default the latest first and without results.
 Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
                                                       const v1::ListSimulationsRequest& request,

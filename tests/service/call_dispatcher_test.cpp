@@ -25,6 +25,7 @@
 #include "tests/service/resource_calls.h"
 #include "tests/service/support.h"
 #include "tribodyn/v1/cycles.pb.h"
+#include "tribodyn/v1/simulations.pb.h"
 
 namespace tribodyn::server {
 namespace {
@@ -303,6 +304,27 @@ TEST_F(CallDispatcherTest, OnlyOneCallRunsOnAThreadOfATransport) {
   EXPECT_EQ(stuck.wait().code(), google::rpc::OK);
   EXPECT_EQ(other.wait().code(), google::rpc::OK);
   transport.join();
+}
+
+TEST_F(CallDispatcherTest, AListRunsOnTheThreadThatBringsItIfItIsShort) {
+  TestCall page(v1::ListSimulationsRequest{});
+  page.may_run_here = true;
+  dispatcher_.answer(page);
+  EXPECT_TRUE(page.is_answered());
+  v1::ListSimulationsRequest filtered, long_page, with_results;
+  filtered.set_filter("state = QUEUED");
+  long_page.set_page_size(1000);
+  with_results.set_view(v1::SIMULATION_VIEW_FULL);
+  for (const auto& request : {filtered, long_page, with_results}) {
+    std::promise<void> release;
+    TestCall list(request);
+    list.may_run_here = true;
+    list.hold(release.get_future().share());  // answer() would block if it ran the call
+    dispatcher_.answer(list);
+    EXPECT_FALSE(list.is_answered());
+    release.set_value();
+    EXPECT_EQ(list.wait().code(), google::rpc::OK);
+  }
 }
 
 TEST_F(CallDispatcherTest, LongCallsAndWritesNeverRunOnAThreadOfATransport) {
