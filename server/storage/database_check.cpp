@@ -110,6 +110,8 @@ void check_rows(Connection& db, Problems& problems) {
            "SELECT 'the number of deleted simulations of ' || name || ' is wrong' FROM projects p "
            "WHERE deletions <> (SELECT count(*) FROM events e WHERE e.state = 0 AND "
            "e.project = p.name)",
+           "SELECT 'the number of simulations of ' || name || ' is wrong' FROM projects p "
+           "WHERE simulations <> (SELECT count(*) FROM simulations s WHERE s.project = p.name)",
            "SELECT 'result ' || id || ': its content differs from its checksum' FROM results "
            "WHERE checksum <> checksum(body)",
            "SELECT (SELECT name FROM simulation_names n WHERE n.simulation = s.id) || "

@@ -148,6 +148,7 @@ void bring_from(Connection& database, int from, int to, Microseconds now) {
   if (passes(11)) database.exec(kSchema11);
   if (passes(12)) database.exec(kSchema12);
   if (passes(13)) database.exec(kSchema13);
+  if (passes(14)) database.exec(kSchema14);
   database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
   database.exec("PRAGMA user_version = " + std::to_string(to));
 }

@@ -8,13 +8,14 @@
 
 namespace tribodyn::server {
 
-/// The tables of a database, schema 13. Times are microseconds since 1970 (UTC). Messages are the
+/// The tables of a database, schema 14. Times are microseconds since 1970 (UTC). Messages are the
 /// protos of tribodyn.v1 in binary form: field numbers never change meaning.
 ///
 ///   projects     one row per project; last_number is that of its latest simulation, removed or
 ///                not, and last_event that of its latest event. deletions: how many events of state
 ///                0 it has; forgotten_event: the largest number of those that were forgotten since
-///                (kKeptDeletions); last_campaign: number of its latest campaign, removed or not
+///                (kKeptDeletions); last_campaign: number of its latest campaign, removed or not;
+///                simulations: how many it has, kept by triggers
 ///   resources    lubricants, gear sets, surfaces, vehicles: one row a name, with the revision that
 ///                is the present one; delete_time is set while it is deleted (nothing is lost).
 ///                name and collection are full ones, "projects/acme/lubricants/my-oil": the project
@@ -88,7 +89,7 @@ namespace tribodyn::server {
 ///
 /// The text of a schema that a release has written never changes: the tables of a database are
 /// compared with it (schema_differences).
-inline constexpr int kSchemaVersion = 13;
+inline constexpr int kSchemaVersion = 14;
 inline constexpr int kApplicationId = 0x54524244;  // "TRBD"
 
 /// Brings a database of schema `from`, 0 for an empty one, to kSchemaVersion in one transaction. A

@@ -573,4 +573,15 @@ WHEN OLD.state >= 3 AND NOT
 BEGIN SELECT RAISE(ABORT, 'a campaign that has ended changes only by further candidates'); END;
 )sql";
 
+// The total of a list without a filter is read, not counted.
+inline constexpr char kSchema14[] = R"sql(
+ALTER TABLE projects ADD COLUMN simulations INTEGER NOT NULL DEFAULT 0 CHECK (simulations >= 0);
+UPDATE projects SET simulations =
+  (SELECT count(*) FROM simulations s WHERE s.project = projects.name);
+CREATE TRIGGER simulations_are_counted AFTER INSERT ON simulations
+BEGIN UPDATE projects SET simulations = simulations + 1 WHERE name = NEW.project; END;
+CREATE TRIGGER removed_simulations_are_not_counted AFTER DELETE ON simulations
+BEGIN UPDATE projects SET simulations = simulations - 1 WHERE name = OLD.project; END;
+)sql";
+
 }  // namespace tribodyn::server

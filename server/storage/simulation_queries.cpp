@@ -116,9 +116,14 @@ Condition condition(Connection& db, const std::string& project, const Restrictio
           {restriction.value}};
 }
 
-/// How many simulations satisfy a condition.
-std::int64_t count_all(Connection& db, const std::string& where,
+/// How many simulations satisfy a condition. Those of a project are counted already.
+std::int64_t count_all(Connection& db, const SimulationQuery& query, const std::string& where,
                        const std::vector<PropertyValue>& values) {
+  if (query.restrictions.empty()) {
+    Prepared counted(db, "SELECT simulations FROM projects WHERE name = ?");
+    counted.bind(1, query.project);
+    return counted.executeStep() ? counted.getColumn(0).getInt64() : 0;
+  }
   SQLite::Statement count(db, "SELECT count(*) FROM simulations " + where);
   for (std::size_t i = 0; i < values.size(); ++i) {
     bind_value(count, static_cast<int>(i) + 1, values[i]);
@@ -154,15 +159,24 @@ Page<StoredSimulation> query_simulations(Connection& db, const SimulationQuery& 
   }
   sql += " ORDER BY create_time" + direction + ", number" + direction + " LIMIT ?";
   values.emplace_back(std::int64_t{query.limit + 1});
-  SQLite::Statement statement(db, sql);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    bind_value(statement, static_cast<int>(i) + 1, values[i]);
+  const auto run = [&](SQLite::Statement& statement) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      bind_value(statement, static_cast<int>(i) + 1, values[i]);
+    }
+    return read_page<StoredSimulation>(statement, query.limit, query.byte_limit, kRequestColumn,
+                                       stored_simulation);
+  };
+  Page<StoredSimulation> page;
+  if (query.restrictions.empty()) {
+    Prepared statement(db, sql);  // one of four texts
+    page = run(statement);
+  } else {
+    SQLite::Statement statement(db, sql);
+    page = run(statement);
   }
-  auto page = read_page<StoredSimulation>(statement, query.limit, query.byte_limit, kRequestColumn,
-                                          stored_simulation);
   if (query.counts_all) {
     page.total =
-        page.more ? count_all(db, where, all_values) : static_cast<std::int64_t>(page.rows.size());
+        page.more ? count_all(db, query, where, all_values) : static_cast<std::int64_t>(page.rows.size());
   }
   return page;
 }

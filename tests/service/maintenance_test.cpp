@@ -386,6 +386,7 @@ TEST_F(MaintenanceTest, CheckFindsEveryKindOfProblem) {
        "its project does not exist or has given no such number"},
       {"UPDATE projects SET deletions = 1",
        "the number of deleted simulations of default is wrong"},
+      {"UPDATE projects SET simulations = 9", "the number of simulations of default is wrong"},
       {"UPDATE results SET body = x'0a00'", "result 1: its content differs from its checksum"},
       {"UPDATE results SET checksum = checksum + 1", "result 1: its content differs from"},
       {"UPDATE ledgers SET body = x'0a00'", "ledger 1: its content differs from its checksum"},

@@ -159,6 +159,26 @@ TEST_F(Removals, AResultIsKeptWhileAnotherSimulationUsesIt) {
   EXPECT_EQ(store_.remove_simulation(first), Store::Removal::kAbsent);
 }
 
+TEST_F(Removals, RemovedSimulationsLeaveTheTotalOfTheList) {
+  write_secret(1);
+  const auto total = [&](std::vector<Restriction> restrictions) {
+    return store_
+        .simulations({.restrictions = std::move(restrictions),
+                      .limit = 1,
+                      .byte_limit = 1 << 20,
+                      .counts_all = true})
+        .total;
+  };
+  const std::vector<Restriction> all = {
+      {"state", Restriction::Comparison::kGreater, std::int64_t{0}}};
+  const auto first = finish('a', 1);
+  for (const char input : {'b', 'c', 'd'}) queue(input, 1);
+  EXPECT_EQ(total({}), 4);
+  EXPECT_EQ(store_.remove_simulation(first), Store::Removal::kDone);
+  EXPECT_EQ(total({}), 3) << "read from the project";
+  EXPECT_EQ(total(all), 3) << "counted";
+}
+
 TEST_F(Removals, APinnedSimulationIsNotRemoved) {
   write_secret(1);
   const auto id = finish('a', 1);
