@@ -372,6 +372,14 @@ std::optional<StoredSimulation> query_simulation_of_request(Connection& db,
   return stored_simulation(query);
 }
 
+bool is_known_or_served(Connection& db, const NewSimulation& simulation) {
+  if (!simulation.request_id.empty() &&
+      query_simulation_of_request(db, simulation.project, simulation.request_id)) {
+    return true;
+  }
+  return !simulation.is_forced && result_row(db, simulation.project, simulation.key);
+}
+
 AddOutcome insert_simulation(Connection& db, const NewSimulation& simulation, Microseconds now,
                              bool may_wait) {
   if (auto repeated = repeated_request(db, simulation)) return std::move(*repeated);

@@ -34,6 +34,8 @@ std::optional<StoredSimulation> query_simulation_of_request(Connection& db,
                                                             const std::string& project,
                                                             const std::string& request_id);
 
+/// Returns true if insert_simulation() would find an earlier request or a result.
+bool is_known_or_served(Connection& db, const NewSimulation& simulation);
 /// As Store::add_simulation.
 AddOutcome insert_simulation(Connection& db, const NewSimulation& simulation, Microseconds now,
                              bool may_wait);

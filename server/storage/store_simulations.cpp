@@ -15,6 +15,12 @@ namespace tribodyn::server {
 AddOutcome Store::add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait,
                                  const CallLimits& limits) {
   AddOutcome added;
+  if (!may_wait) {
+    // A simulation that must wait is refused by a read, which waits for no commit.
+    const bool needs_row =
+        read(limits, [&](Connection& db) { return is_known_or_served(db, simulation); });
+    if (!needs_row) return {AddOutcome::Kind::kNoPlace, 0};
+  }
   write_together(limits,
                  [&](Connection& db) { added = insert_simulation(db, simulation, now, may_wait); });
   return added;

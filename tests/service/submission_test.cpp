@@ -144,5 +144,16 @@ TEST_F(Submission, LooksForARequestIdOnceMoreInTheTransaction) {
   EXPECT_EQ(answer_.name(), name);
 }
 
+TEST_F(Submission, IsRefusedByAReadThatWaitsForNoCommit) {
+  AddOutcome added;
+  const NewSimulation simulation{.request = "request",
+                                 .key = {std::string(64, 'a'), "model", "platform"}};
+  const auto refused =
+      trace_.of([&] { added = app_.store.add_simulation(simulation, 0, /*may_wait=*/false); });
+  EXPECT_EQ(added.kind, AddOutcome::Kind::kNoPlace);
+  EXPECT_THAT(reads_of(refused), ElementsAre("result of equal inputs"));
+  EXPECT_EQ(refused.size(), 1u) << "no transaction";
+}
+
 }  // namespace
 }  // namespace tribodyn::server
