@@ -7,18 +7,19 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <string>
 
 #include "server/application/call_dispatcher.h"
 
 namespace tribodyn::server {
 
-/// Returns the context of a call, from its metadata and its connection. Its deadline is the
-/// client's, or `limit` from now if that is earlier.
-CallContext call_context(const grpc::CallbackServerContext& context,
+/// Returns the context of a call, from its metadata and its connection, which gRPC calls `peer`.
+/// Its deadline is the client's, or `limit` from now if that is earlier.
+CallContext call_context(const grpc::CallbackServerContext& context, const std::string& peer,
                          std::chrono::milliseconds limit, const std::atomic<bool>& cancelled);
 
 /// Returns what a call brings to show who makes it: its header authorization and its connection.
-Credentials credentials_of(const grpc::CallbackServerContext& context);
+Credentials credentials_of(const grpc::CallbackServerContext& context, const std::string& peer);
 
 /// The common part of a UnaryCall and a StreamCall over gRPC. gRPC owns the request and keeps it
 /// until OnDone; only this call uses it.
@@ -28,8 +29,9 @@ class GrpcCall : public Call {
   GrpcCall(const Method& its_method, const grpc::CallbackServerContext& its_context,
            const grpc::ByteBuffer& request, std::chrono::milliseconds limit)
       : Call(its_method), request_(const_cast<grpc::ByteBuffer&>(request)) {
-    this->context = call_context(its_context, limit, cancelled_);
-    this->credentials = credentials_of(its_context);
+    const std::string peer = its_context.peer();
+    this->context = call_context(its_context, peer, limit, cancelled_);
+    this->credentials = credentials_of(its_context, peer);
   }
 
   std::size_t request_size() const override { return request_.Length(); }

@@ -60,14 +60,13 @@ class UnaryReactor final : public grpc::ServerUnaryReactor, public GrpcCall<Unar
 
 }  // namespace
 
-CallContext call_context(const Context& context, std::chrono::milliseconds limit,
-                         const std::atomic<bool>& cancelled) {
+CallContext call_context(const Context& context, const std::string& peer,
+                         std::chrono::milliseconds limit, const std::atomic<bool>& cancelled) {
   using std::chrono::system_clock;
   // A limit of 0 gives a deadline that has passed, whatever the client's.
   const auto left =
       std::min<system_clock::duration>(context.deadline() - system_clock::now(), limit);
   // For a Unix socket the peer is a path that the client chose.
-  const std::string peer = context.peer();
   return call_context({.client = header(context, "tribodyn-client"),
                        .request_id = header(context, "tribodyn-request-id"),
                        .peer = peer},
@@ -82,12 +81,15 @@ std::string certificate_name(const Context& context) {
   return names.size() == 1 ? std::string(names.front().data(), names.front().size()) : "";
 }
 
-Credentials credentials_of(const Context& context) {
+Credentials credentials_of(const Context& context, const std::string& peer) {
+  Credentials out;
   // gRPC writes the kind of the socket in front of the client's own words. The acceptor has closed
   // connections of other users to a Unix socket.
-  return {.is_owner = context.peer().starts_with("unix"),
-          .authorization = std::string(header(context, "authorization")),
-          .certificate = certificate_name(context)};
+  out.is_owner = peer.starts_with("unix");
+  out.authorization = std::string(header(context, "authorization"));
+  // A token goes before a certificate, which gRPC copies for each call.
+  if (!out.is_owner && out.authorization.empty()) out.certificate = certificate_name(context);
+  return out;
 }
 
 std::vector<std::unique_ptr<grpc::Service>> grpc_services(CallDispatcher& dispatcher,
