@@ -175,8 +175,8 @@ Page<StoredSimulation> query_simulations(Connection& db, const SimulationQuery& 
     page = run(statement);
   }
   if (query.counts_all) {
-    page.total =
-        page.more ? count_all(db, query, where, all_values) : static_cast<std::int64_t>(page.rows.size());
+    page.total = page.more ? count_all(db, query, where, all_values)
+                           : static_cast<std::int64_t>(page.rows.size());
   }
   return page;
 }

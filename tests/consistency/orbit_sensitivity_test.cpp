@@ -91,8 +91,13 @@ struct OrbitOnGrid {
               reduced_modulus(scene.solid.youngs_modulus, scene.solid.poissons_ratio),
               scene.options),
         grid(grids.with_steps(steps)),
-        problem{system, contacts, grids, place.target.mean_pinion_speed,
-                place.target.solve_wheel_torque, 1e-5, {}},
+        problem{system,
+                contacts,
+                grids,
+                place.target.mean_pinion_speed,
+                place.target.solve_wheel_torque,
+                1e-5,
+                {}},
         solver(problem, work) {
     system.set_torques(place.target.torques);
     options.bilateral_contact = in_contact;

@@ -68,8 +68,8 @@ void characterise_candidates(Connection& connection, const CandidateBase& base,
 std::vector<const google::protobuf::FieldDescriptor*> candidate_parameters();
 
 /// Returns the parameter of lubricants or surfaces for a word as of find_parameter(), also after
-/// "lubricant." or "surface.". Returns null and sets `wrong` to a complaint with the nearest name of
-/// both if there is none.
+/// "lubricant." or "surface.". Returns null and sets `wrong` to a complaint with the nearest name
+/// of both if there is none.
 const google::protobuf::FieldDescriptor* find_candidate_parameter(const std::string& word,
                                                                   std::string& wrong);
 

@@ -76,9 +76,8 @@ TEST_P(Allocation, NoneInAMeshCycle) {
   const MarchOptions options;
   march_mesh_cycle(system_, scales_, options, state_, work);
   for (int i = 0; i < 5; ++i) {
-    EXPECT_EQ(
-        allocations_of([&] { march_mesh_cycle(system_, scales_, options, state_, work); }),
-        0);
+    EXPECT_EQ(allocations_of([&] { march_mesh_cycle(system_, scales_, options, state_, work); }),
+              0);
   }
   EXPECT_EQ(work.events > 0, GetParam() < 80);
 }
