@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 #include <vector>
 
 #include "core/integrate/mesh_cycle_march.h"
+#include "tests/support/coarse_tables.h"
 #include "tests/support/paths.h"
 #include "tests/support/reference_scene.h"
 #include "tests/support/run_length.h"
@@ -36,26 +36,10 @@ struct Outcome {
 class OrderTest : public testing::Test {
  protected:
   OrderTest()
-      : scene_(coarse(reference_scene())),
+      : scene_(with_coarse_tables(reference_scene(), kCoarseTables)),
         contact_(scene_.lubricant, scene_.solid, scene_.roughness, scene_.boundary,
                  scene_.sump_temperature, scene_.inlet_temperature_rise, scene_.options),
         mesh_(scene_.gear_set) {}
-
-  /// Fewer samples in the tables, so that steps need not end 96 times per cycle.
-  static Scene coarse(Scene scene) {
-    ToothContactTables& t = scene.gear_set.tables;
-    for (SlotTable* table :
-         {&t.load_share, &t.radius_x, &t.radius_y, &t.pinion_velocity_x, &t.pinion_velocity_y,
-          &t.gear_velocity_x, &t.gear_velocity_y, &t.contact_point_velocity_x,
-          &t.contact_point_velocity_y, &t.pinion_friction_arm, &t.gear_friction_arm}) {
-      for (std::vector<double>& slot : *table) {
-        std::vector<double> kept;
-        for (std::size_t i = 0; i < slot.size(); i += kCoarseTables) kept.push_back(slot[i]);
-        slot = std::move(kept);
-      }
-    }
-    return scene;
-  }
 
   double mean_speed(const InitialValueProblem& problem) const {
     return problem.speed_kilometres_per_hour / 3.6 / scene_.vehicle.wheel_radius *
