@@ -265,7 +265,7 @@ TEST(FromCore, NoFieldOfAPointIsForgotten) {
   }
   core.contact_loss = core.coast_side_contact = core.settled = true;
   core.period_in_mesh_cycles = core.recorded_mesh_cycles = 9;
-  core.statistics = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
+  core.statistics = {{1, 2, 3, 4, 5, 6}, 7, 8, 9, 10};
   core.power_balance = {1, 2, 3, 4, 5, 6, 7};
   core.section_state = {1, 2, 3, 4, 5, 6, 7};
   core.sensitivities = PointSensitivities{{}, {{"lubricant.x", "K", 3, {}}}, true};
