@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/refusal.h"
 #include "core/study/operating_point.h"
 #include "core/uncertainty/drawn_value.h"
 #include "server/contract/resource_names.h"

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "core/refusal.h"
 #include "server/application/simulations.h"
 #include "tests/service/support.h"
 

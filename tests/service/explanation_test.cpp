@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/refusal.h"
 #include "core/study/operating_point.h"
 #include "server/mapping/to_core.h"
 #include "server/simulation/point_explanation.h"

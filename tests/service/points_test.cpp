@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/refusal.h"
 #include "core/study/operating_point.h"
 #include "server/contract/resource_names.h"
 #include "server/simulation/point_evaluation.h"
