@@ -240,6 +240,7 @@ TEST_F(CampaignTest, AWatchHasEveryStateAndGrowingProgressUntilTheEnd) {
     EXPECT_GT(event->points_done(), done);
     EXPECT_LE(event->first_missing_row(), event->points_done());
     done = event->points_done();
+    if (event->first_missing_row() == 0) continue;  // a later tile was written first
     const Table written = read(name, {"refusal_number"}, 0, event->first_missing_row());
     EXPECT_THAT(written.at("refusal_number"), testing::Each(0)) << "can be read";
   }
