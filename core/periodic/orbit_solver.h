@@ -13,9 +13,9 @@ namespace tribodyn {
 //     before (simplified Newton). Without a gap all steps of a mesh cycle are unknowns
 //     (MultipleShooting), otherwise the state at the section alone (SingleShooting).
 //  3. Friction is evaluated on the orbit and frozen again (Picard). The gain of the figures over
-//     the friction, measured by a secant, tells how much further iterations would change.
-//  4. Steps 2 and 3 repeat until neither changes the figures by more than the tolerance; what is
-//     left is the error of the grid's steps.
+//     the friction, measured by a secant, gives the change by further iterations.
+//  4. Steps 2 and 3 repeat until neither changes the figures by more than the tolerance. The error
+//     that remains is that of the grid's steps.
 // (R. Seydel, Practical Bifurcation and Stability Analysis, 3rd ed., 2010, chapter 7; for the
 // simplified Newton method P. Deuflhard, Newton Methods for Nonlinear Problems, 2004, section 2.1.)
 

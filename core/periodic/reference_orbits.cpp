@@ -80,7 +80,7 @@ std::vector<PeriodicOrbit> reference_orbits(const PeriodicProblem& problem,
                  error_by_other_friction(other, problem.grids, precise, out[0], out.back()));
     problem.system.take_refusal();
   }
-  // Less than the second power of the steps tells may be an accident of one friction.
+  // An error below that of second-order steps may be an accident of one friction coefficient.
   for (std::size_t i = 1; i + 1 < out.size(); ++i) {
     out[i].estimated_error =
         std::max(out[i].estimated_error, out[i - 1].estimated_error / (2 * finer(i) * finer(i)));

@@ -27,7 +27,7 @@ std::string value_name_of(const NumberText& text) {
   return text.unit == "-" ? "NUMBER" : text.unit;
 }
 
-/// Returns what is wrong with 0 where the allowed range begins above it; empty if it is allowed.
+/// Returns a complaint if the value is 0 and the allowed range begins above 0; otherwise "".
 /// A whole number that is 0 is not set for the server, which takes the default.
 std::string complaint_of_zero(const NumberText& text, const std::string& description) {
   const bool has_meaning =

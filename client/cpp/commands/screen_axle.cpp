@@ -32,7 +32,7 @@ void normalise(std::vector<double>& weights) {
   for (double& weight : weights) weight /= sum;
 }
 
-/// Sets the conditions, with what is the default where flags state nothing, and their weights.
+/// Sets the conditions and their weights. A setting without a flag has its default value.
 void set_screened_conditions(const ScreenFlags& flags, Screening& screening) {
   ConditionFlags conditions = flags.conditions;
   if (conditions.sumps.empty()) conditions.sumps.push_back(40);

@@ -11,7 +11,7 @@ namespace tribodyn::client {
 /// Returns campaigns as a table of one row each, as CSV or as JSON.
 std::string campaigns_text(const std::vector<v1::Campaign>& campaigns, OutputFormat format);
 
-/// Returns the state of one campaign: its progress, what it rests on, and why points have no
+/// Returns the state of one campaign: its progress, its inputs, and the reasons why points have no
 /// figures; or as campaigns_text() in CSV, or as the message in JSON.
 std::string campaign_text(const v1::Campaign& campaign, OutputFormat format);
 

@@ -10,7 +10,7 @@ constexpr std::size_t kMostOfAKind = 3;  // different sentences
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Returns the sentence without what stands in quotes and without digits.
+/// Returns the sentence without quoted texts and without digits.
 std::string kind_of_sentence(const std::string& sentence) {
   std::string out;
   bool is_quoted = false;

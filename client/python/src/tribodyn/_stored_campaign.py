@@ -35,7 +35,7 @@ class StoredCampaign:
         return pb.Campaign.State.Name(self.message.state).lower()
 
     async def refresh(self) -> pb.Campaign:
-        """Asks the server for the present message, and returns it."""
+        """Fetches the present message from the server and returns it."""
         self.message = await self._get(pb.CAMPAIGN_VIEW_BASIC)
         return self.message
 
