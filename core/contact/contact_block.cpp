@@ -21,7 +21,7 @@ namespace HWY_NAMESPACE {
 namespace {
 
 /// Proofs, and what follows from the stress.
-template <class Growth>
+template <class Growth, Digits kDigits>
 HWY_INLINE void certify(const Tables& t, ContactBlockResults& block, const Work& work, int i) {
   const Pack base = load(work.base + i), rise = load(work.rise + i);
   const Pack change = load(work.change + i), scaled = load(work.scaled_pressure + i);
@@ -39,7 +39,8 @@ HWY_INLINE void certify(const Tables& t, ContactBlockResults& block, const Work&
     const Pack excess_end = excess_at_end<Growth>(t, work, i);
     const Pack excess_rim = load(work.law_base + i) - t.log_limit_at_rim;
     const Mask clipped = excess_end > 0, all_limited = excess_rim > 0;
-    solved = solved & (size(excess_rim) > 1e-8) & (size(excess_end) > 1e-8);
+    constexpr double kRounding = kDigits == Digits::kFull ? 1e-8 : 1e-6;
+    solved = solved & (size(excess_rim) > kRounding) & (size(excess_end) > kRounding);
     const Mask rising = factor >= t.monotone_factor;
     solved = solved & (t.falls_then_rises ? rising | ~all_limited : rising);
     const Mask touched = clipped | all_limited;
@@ -70,26 +71,27 @@ HWY_INLINE void certify(const Tables& t, ContactBlockResults& block, const Work&
   store(as_number(solved), block.solved + i);
 }
 
-template <class Growth>
+template <class Growth, Digits kDigits>
 void solve_with(const Tables& tables, int count, const ContactBlockInputs& in,
                 ContactBlockResults& block) {
   Work work;
   const ActiveLanes active(count);
-  for (const int i : active) eval_logarithms(in, work, i);
-  for (const int i : active) eval_film_under_all(tables, in, work, i);
+  for (const int i : active) eval_logarithms<kDigits>(in, work, i);
+  for (const int i : active) eval_film_under_all<kDigits>(tables, in, work, i);
   if (tables.inlet_shear_heating) {
-    for (const int i : active) heat_inlet(tables, in, work, i);
+    for (const int i : active) heat_inlet<kDigits>(tables, in, work, i);
   }
-  share_loads(tables, active, work);
-  for (const int i : active) finish_load_sharing(tables, in, block, work, i);
+  share_loads<kDigits>(tables, active, work);
+  for (const int i : active) finish_load_sharing<kDigits>(tables, in, block, work, i);
   for (const int i : active) eval_thermal_network(tables, in, block, work, i);
   for (const int i : active) {
-    prepare_shear<Growth>(tables, load(block.sliding_speed + i), load(block.film_thickness + i),
-                          load(block.maximum_pressure + i), block.shear_rate, work, i);
+    prepare_shear<Growth, kDigits>(tables, load(block.sliding_speed + i),
+                                   load(block.film_thickness + i), load(block.maximum_pressure + i),
+                                   block.shear_rate, work, i);
   }
-  solve_coarse<Growth>(tables, active, work);
-  solve_fine<Growth>(tables, active, work);
-  for (const int i : active) certify<Growth>(tables, block, work, i);
+  solve_coarse<Growth, kDigits == Digits::kHalf>(tables, active, work);
+  if (kDigits == Digits::kFull) solve_fine<Growth>(tables, active, work);
+  for (const int i : active) certify<Growth, kDigits>(tables, block, work, i);
 }
 
 template <class Growth>
@@ -102,10 +104,10 @@ void sample_with(const Tables& tables, const StartSamples& in, double* rise) {
     store(tables.inlet_temperature, work.base + i);
     store(0, work.start + i);
     store(load(in.gain + i), work.gain + i);
-    prepare_shear<Growth>(tables, load(in.shear_rate + i), 1, load(in.pressure + i), ignored, work,
-                          i);
+    prepare_shear<Growth, Digits::kHalf>(tables, load(in.shear_rate + i), 1, load(in.pressure + i),
+                                         ignored, work, i);
   }
-  solve_coarse<Growth>(tables, active, work);
+  solve_coarse<Growth, false>(tables, active, work);
   for (const int i : active) store(load(work.rise + i), rise + i);
 }
 
@@ -113,14 +115,24 @@ bool is_roelands(const Tables& tables) {
   return tables.shear.lubricant.pressure_viscosity_law == PressureViscosityLaw::kRoelands;
 }
 
+template <class Growth>
+void solve_with(const Tables& tables, Digits digits, int count, const ContactBlockInputs& in,
+                ContactBlockResults& block) {
+  if (digits == Digits::kFull) {
+    solve_with<Growth, Digits::kFull>(tables, count, in, block);
+  } else {
+    solve_with<Growth, Digits::kHalf>(tables, count, in, block);
+  }
+}
+
 }  // namespace
 
-void solve_block(const Tables& tables, int count, const ContactBlockInputs& in,
+void solve_block(const Tables& tables, Digits digits, int count, const ContactBlockInputs& in,
                  ContactBlockResults& block) {
   if (is_roelands(tables)) {
-    solve_with<RoelandsGrowth>(tables, count, in, block);
+    solve_with<RoelandsGrowth>(tables, digits, count, in, block);
   } else {
-    solve_with<LawGrowth>(tables, count, in, block);
+    solve_with<LawGrowth>(tables, digits, count, in, block);
   }
 }
 
@@ -146,8 +158,9 @@ HWY_AFTER_NAMESPACE();
 namespace tribodyn {
 
 void solve_contact_block(InstructionSet instruction_set, const ContactBlockTables& tables,
-                         int count, const ContactBlockInputs& in, ContactBlockResults& out) {
-  TRIBODYN_RETURN_WITH(instruction_set, solve_block, tables, count, in, out)
+                         Digits digits, int count, const ContactBlockInputs& in,
+                         ContactBlockResults& out) {
+  TRIBODYN_RETURN_WITH(instruction_set, solve_block, tables, digits, count, in, out)
 }
 
 void sample_rises(InstructionSet instruction_set, const ContactBlockTables& tables,

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "core/contact/contact_block_tables.h"
+#include "core/numerics/digits.h"
 #include "core/numerics/instruction_set.h"
 
 namespace tribodyn {
@@ -29,9 +30,11 @@ struct alignas(64) ContactBlockResults {
 };
 
 /// Solves the first `count` contacts of a block with the given instructions, which the CPU must
-/// have. Beyond the count, inputs may be anything but must be there.
+/// have. Beyond the count, inputs may be anything but must be there. `digits`: as for
+/// FlankContactBatch::solve().
 void solve_contact_block(InstructionSet instruction_set, const ContactBlockTables& tables,
-                         int count, const ContactBlockInputs& in, ContactBlockResults& out);
+                         Digits digits, int count, const ContactBlockInputs& in,
+                         ContactBlockResults& out);
 
 /// Films without a boundary part at the inlet temperature, for the fit of the start.
 struct alignas(64) StartSamples {

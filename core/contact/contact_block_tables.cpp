@@ -132,7 +132,7 @@ bool tabulate_ratio(InstructionSet instruction_set, double least_factor, double 
     tables.depth_scale = 2 / deepest;
     tables.depth_offset = -1;
     tables.ratio = truncated(coefficients, 2e-11);
-    tables.coarse_ratio = truncated(coefficients, 1.5e-5);
+    tables.coarse_ratio = truncated(coefficients, 3e-6);
     return true;
   }
   return false;

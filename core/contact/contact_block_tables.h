@@ -70,7 +70,7 @@ struct ContactBlockTables {
   // x = factor_scale L + factor_offset, y = depth_scale s + depth_offset.
   double factor_scale = 0, factor_offset = 0, depth_scale = 0, depth_offset = 0;
   BivariatePolynomial ratio;         ///< R to 1e-12
-  BivariatePolynomial coarse_ratio;  ///< R to 3e-7: iterations only
+  BivariatePolynomial coarse_ratio;  ///< R to 1e-6: for half of the digits
 
   bool start_fitted = false;
   StartFit start;

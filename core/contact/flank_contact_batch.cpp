@@ -319,7 +319,7 @@ constexpr ContactLanes kNoStart{};
 std::size_t FlankContactBatch::solve(const ContactGeometries& geometries, std::size_t first,
                                      std::size_t count,
                                      const FlankContactBatchConditions& conditions,
-                                     const FlankContactBatchResults& results) const {
+                                     const FlankContactBatchResults& results, Digits digits) const {
   const ContactGeometries& g = geometries;
   const FlankContactBatchConditions& k = conditions;
   std::size_t by_reference = 0;
@@ -359,7 +359,7 @@ std::size_t FlankContactBatch::solve(const ContactGeometries& geometries, std::s
   int filled = 0;
   const auto flush = [&] {
     collected.pad(filled);
-    solve_contact_block(instruction_set_, *tables_, filled, collected.inputs(), solved);
+    solve_contact_block(instruction_set_, *tables_, digits, filled, collected.inputs(), solved);
     put(
         solved, filled, [&](int n) { return place[n]; }, results);
     for (int n = 0; n < filled; ++n) {
@@ -369,7 +369,7 @@ std::size_t FlankContactBatch::solve(const ContactGeometries& geometries, std::s
   };
   for (std::size_t i = 0; i < count;) {
     if (filled == 0 && count - i >= kBlockContacts && all_loaded(k.load + i)) {
-      solve_contact_block(instruction_set_, *tables_, kBlockContacts, inputs(i), solved);
+      solve_contact_block(instruction_set_, *tables_, digits, kBlockContacts, inputs(i), solved);
       put(
           solved, kBlockContacts, [i](int n) { return i + n; }, results);
       for (int n = 0; n < kBlockContacts; ++n) {

@@ -26,8 +26,9 @@ namespace {
 /// Roelands: ln tau = law_base + L (e^(Z s) - 1), in closed form throughout.
 struct RoelandsGrowth {
   /// Leaves what stays while the temperature is sought.
+  template <Digits kDigits>
   static HWY_INLINE void prepare_end(const Tables& t, Pack end, Work& work, int i) {
-    store(exponential(t.shear.index * end) - 1, work.end_growth + i);
+    store(exponential<kDigits>(t.shear.index * end) - 1, work.end_growth + i);
   }
   static HWY_INLINE Pack log_stress_at_end(const Tables&, const Work& work, int i) {
     return log_under_pressure(load(work.law_base + i), load(work.factor + i),
@@ -66,6 +67,7 @@ struct LawGrowth {
         exponential_less_one(Number::variable(depth, 1)) * (1 / kRoelandsPressureCoefficient);
     return pressure_growth(t.shear.growth, temperature, pressure);
   }
+  template <Digits kDigits>
   static HWY_INLINE void prepare_end(const Tables&, Pack, Work&, int) {}
   static HWY_INLINE Pack log_stress_at_end(const Tables& t, const Work& work, int i) {
     return load(work.law_base + i) + growth(t, load(work.end + i), work, i).value;

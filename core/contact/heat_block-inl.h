@@ -74,7 +74,9 @@ struct Step {
   Pack per_slope;   // 1/e' where the cut moves
 };
 
-template <class Growth, Digits kDigits>
+///
+/// kKept: the stress of the step is a result, not only a way to one.
+template <class Growth, bool kKept>
 HWY_INLINE Step halley_step(const Tables& t, const Work& work, int i) {
   const Pack scaled = load(work.scaled_pressure + i), per_scaled = load(work.per_scaled + i);
   const Pack stress = load(work.stress + i), ratio = load(work.ratio + i);
@@ -87,7 +89,7 @@ HWY_INLINE Step halley_step(const Tables& t, const Work& work, int i) {
   }
   // Where the stress is not cut off, q is c p_max: e_cut - 1 has lost digits of small ones.
   Pack q = e_cut - 1;
-  if (kDigits == Digits::kFull) q = least(select(clipped, q, scaled), scaled);
+  if (kKept) q = least(select(clipped, q, scaled), scaled);
   const Pack part = q * per_scaled, part2 = part * part;
   const Pack weighted = stress * part2;
   // d ln tau(s)/dT.
@@ -112,7 +114,7 @@ HWY_INLINE Step halley_step(const Tables& t, const Work& work, int i) {
     const Pack rate = part * (e_cut * per_scaled);          // (d tau_bar/ds)/2 per excess stress
     const Pack mixed = (rate + rate) * stress * log_slope;  // d2 tau_bar/(ds dT)
     step.mean = fused(rate * (stress - limit), step.cut_change,
-                      step.mean + (kDigits == Digits::kFull ? where(clipped, on_limit) : on_limit));
+                      step.mean + (kKept ? where(clipped, on_limit) : on_limit));
     mean_slope = fused(mixed, step.cut_change, mean_slope);
     step.mean = select(all_limited, load(work.all_limit + i), step.mean);
     mean_slope = where(~all_limited, mean_slope);
@@ -202,41 +204,50 @@ HWY_INLINE void start_cut(const Tables& t, Work& work, int i) {
   store(meeting(logarithm<kHalf>(limit)), work.cut + i);
 }
 
-/// Takes a step with half of the digits. False when none of the pack needs another.
-template <class Growth>
+/// Leaves what certify() makes the results of.
+HWY_INLINE void keep_step(const Step& step, Work& work, int i) {
+  store(step.mean, work.mean + i);
+  store(step.change, work.change + i);
+  store(step.cut_change, work.cut_change + i);
+}
+
+/// Takes a step with half of the digits. Returns false if none of the pack needs another. kKept:
+/// contacts whose step is small stay, and it is still to be added; otherwise they take it.
+template <class Growth, bool kKept>
 HWY_INLINE bool take_coarse_step(const Tables& t, Work& work, int i) {
-  constexpr double kClose = 1.5e-3, kCutClose = 4e-3;
+  constexpr double kClose = kKept ? 5e-4 : 1.5e-3, kCutClose = kKept ? 1e-3 : 4e-3;
   const Pack rise = load(work.rise + i), cut = load(work.cut + i), end = load(work.end + i);
   Mask pending = load(work.pending + i) > 0;
-  const Step step = halley_step<Growth, Digits::kHalf>(t, work, i);
+  const Step step = halley_step<Growth, kKept>(t, work, i);
+  const Mask moves = pending;
+  pending = pending & ~((size(step.change) <= kClose) & (size(step.cut_change) <= kCutClose));
+  if (kKept) keep_step(step, work, i);
+  const Mask stays = kKept ? ~pending : ~moves;
   if (!t.isothermal) {
     // e^x nearly: 1 + x + x^2/2 upwards, its inverse with -x downwards.
     const Pack up = fused(size(step.change), fused(size(step.change), 0.5, 1), 1);
     const Pack next = least(select(step.change < 0, rise / up, rise * up), room_of(t, work, i));
-    store(select(pending, next, rise), work.rise + i);
+    store(select(stays, rise, next), work.rise + i);
   }
   const Pack next = least(greatest(cut + step.cut_change, 0.25 * cut), end);
-  store(select(pending, next, cut), work.cut + i);
-  pending = pending & ~((size(step.change) <= kClose) & (size(step.cut_change) <= kCutClose));
+  store(select(stays, cut, next), work.cut + i);
   store(as_number(pending), work.pending + i);
   return any(pending);
 }
 
-/// The same with all digits: contacts whose step is small stay, and it is still to be added.
+/// The same with all digits. Contacts whose step is small stay, and it is still to be added.
 template <class Growth>
 HWY_INLINE bool take_fine_step(const Tables& t, Work& work, int i) {
   // Newton's error is the square of the step, times a curvature that grows where stress and limit
   // meet at a small angle.
   constexpr double kSettled = 3e-6, kCutSettled = 3.6e-6;
   const Pack rise = load(work.rise + i), cut = load(work.cut + i);
-  const Step step = halley_step<Growth, Digits::kFull>(t, work, i);
+  const Step step = halley_step<Growth, true>(t, work, i);
   const Pack weight = fused(4, step.per_slope, 1);
   const Mask pending =
       (load(work.eligible + i) > 0) &
       ~((size(step.change) <= kSettled) & (size(step.cut_change) * weight <= kCutSettled));
-  store(step.mean, work.mean + i);
-  store(step.change, work.change + i);
-  store(step.cut_change, work.cut_change + i);
+  keep_step(step, work, i);
   store(as_number(pending), work.pending + i);
   if (!any(pending)) return false;
   const Pack next = rise * fused(step.change, fused(step.change, 0.5, 1), 1);
@@ -256,13 +267,14 @@ HWY_NOINLINE void eval_all(const Tables& t, const ActiveLanes& active, bool firs
   for (const int i : active) eval_ratio<kDigits>(t, work, i);
 }
 
-template <class Growth>
+/// kKept: solve_fine() does not follow.
+template <class Growth, bool kKept>
 HWY_NOINLINE void solve_coarse(const Tables& t, ActiveLanes active, Work& work) {
   for (const int i : active) start(t, work, i);
   constexpr int kMostSteps = 16;
   for (int n = 0; n < kMostSteps && !active.empty(); ++n) {
     eval_all<Growth, Digits::kHalf>(t, active, n == 0, work);
-    active.keep([&](int i) HWY_ATTR { return take_coarse_step<Growth>(t, work, i); });
+    active.keep([&](int i) HWY_ATTR { return take_coarse_step<Growth, kKept>(t, work, i); });
   }
 }
 

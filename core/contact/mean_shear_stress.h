@@ -19,7 +19,7 @@ struct ShearedFilm {
 /// log_stress with eq 31 as chosen.
 template <class Real>
 laws::LogStress<Real> log_stress(const ShearLaw<Real>& law, Real temperature, Real log_shear_rate) {
-  auto out = laws::log_stress<laws::Digits::kFull>(law, temperature, log_shear_rate);
+  auto out = laws::log_stress<Digits::kFull>(law, temperature, log_shear_rate);
   if (!law.roelands_misprinted) return out;
   const Real log_viscosity = out.factor - laws::kRoelandsLogViscosity;
   out.factor = laws::roelands_factor_as_published(log_viscosity);

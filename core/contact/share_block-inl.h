@@ -22,6 +22,7 @@ namespace {
 
 /// Bounds within which nothing overflows and logarithms keep their digits; and the logarithms of
 /// eq 12. (A stage of its own: with the exponentials it would run out of registers.)
+template <Digits kDigits>
 HWY_INLINE void eval_logarithms(const ContactBlockInputs& in, Work& work, int i) {
   const Pack load_all = load_any(in.load + i);
   const Pack x_1 = load_any(in.x_1 + i), y_1 = load_any(in.y_1 + i);
@@ -37,15 +38,17 @@ HWY_INLINE void eval_logarithms(const ContactBlockInputs& in, Work& work, int i)
   store(as_number(eligible), work.eligible + i);
   store(slide2, work.slide2 + i);
   // 1/R_e = Q_e/U^2, 1/R_s = Q_s/U^2.
-  store(logarithm(curvature_along_entrainment(mean_x2, mean_y2, curvature_x, curvature_y)),
+  store(logarithm<kDigits>(curvature_along_entrainment(mean_x2, mean_y2, curvature_x, curvature_y)),
         work.log_along + i);
-  store(logarithm(curvature_across_entrainment(mean_x2, mean_y2, curvature_x, curvature_y)),
-        work.log_across + i);
-  store(logarithm(speed2), work.log_speed2 + i);
-  store(logarithm(load_all), work.log_load + i);
+  store(
+      logarithm<kDigits>(curvature_across_entrainment(mean_x2, mean_y2, curvature_x, curvature_y)),
+      work.log_across + i);
+  store(logarithm<kDigits>(speed2), work.log_speed2 + i);
+  store(logarithm<kDigits>(load_all), work.log_load + i);
 }
 
 /// The film if it carried all the load.
+template <Digits kDigits>
 HWY_INLINE void eval_film_under_all(const Tables& t, const ContactBlockInputs& in, Work& work,
                                     int i) {
   const Pack log_along = load(work.log_along + i), log_load = load(work.log_load + i);
@@ -53,20 +56,21 @@ HWY_INLINE void eval_film_under_all(const Tables& t, const ContactBlockInputs& i
   const Pack log_thickness = log_film(t.log_film, log_speed2, log_along - log_speed2, log_load);
   const Mask eligible = (load(work.eligible + i) > 0) & within(log_thickness, -70, 7);
   const Pack film =
-      exponential(log_thickness) * side_leakage(log_along - load(work.log_across + i));
+      exponential<kDigits>(log_thickness) * side_leakage(log_along - load(work.log_across + i));
   store(as_number(eligible), work.eligible + i);
   store(film, work.film_under_all + i);
-  const Pack per_root = exponential((-1.0 / 3) * log_load);
+  const Pack per_root = exponential<kDigits>((-1.0 / 3) * log_load);
   store(load_any(in.load + i) * square(per_root), work.load_root + i);
   store(t.asperity_load_factor * load_any(in.unit_area + i) * per_root, work.asperities + i);
 }
 
 /// The same where shear heats the inlet.
+template <Digits kDigits>
 HWY_INLINE void heat_inlet(const Tables& t, const ContactBlockInputs& in, Work& work, int i) {
   const Pack pressure = load_any(in.unit_pressure + i) * load(work.load_root + i);
   const Pack factor =
       inlet_heating_factor(t.log_thermal_loading, load(work.log_speed2 + i),
-                           logarithm(load(work.slide2 + i)), pressure, t.reduced_modulus);
+                           logarithm<kDigits>(load(work.slide2 + i)), pressure, t.reduced_modulus);
   store(load(work.film_under_all + i) * factor, work.film_under_all + i);
 }
 
@@ -101,24 +105,26 @@ HWY_INLINE Pack polynomial(const std::array<double, kAsperityTerms>& c, Pack x) 
   return fused(odd, x, even);
 }
 
-constexpr double kShareSettled = 2e-6;
+/// The last change of ln(W_EHL/W), which is carried on to second order.
+template <Digits kDigits>
+constexpr double kShareSettled = kDigits == Digits::kFull ? 2e-6 : 2e-4;
 
 /// One Newton step for ln(e^r + W_asp(r)/W) = 0, r = ln(W_EHL/W) (see load_sharing.h). False where
 /// no contact of the pack needs another one; their last changes are still to be added.
-template <bool kFirst>
+template <Digits kDigits, bool kFirst>
 HWY_INLINE bool newton_step_of_share(const Tables& t, Work& work, int i) {
   const Pack ratio_all = load(work.film_under_all + i) * t.inverse_roughness;
   Pack r = 0, third = 1, thinner = 1;
   if (!kFirst) {
     r = load(work.log_share + i);
-    third = exponential((1.0 / 3) * r);
+    third = exponential<kDigits>((1.0 / 3) * r);
     thinner = film_thinning(r);
   }
   const Pack film_ratio = least(ratio_all * thinner, kAsperityEnd);
   const Pack v = 1 / (film_ratio + kAsperityShift);
   const ValueAndSlope p =
       polynomial_and_slope(t.f5_2, fused(v, t.asperity_scale, t.asperity_offset));
-  const Pack gaussian = exponential(-0.5 * square(film_ratio));
+  const Pack gaussian = exponential<kDigits>(-0.5 * square(film_ratio));
   const Pack f5_2 = gaussian * square(v) * v * root(v) * p.value;
   const Pack area = square(third), share = area * third;
   const Pack carried = load(work.asperities + i) * area * f5_2;
@@ -141,21 +147,23 @@ HWY_INLINE bool newton_step_of_share(const Tables& t, Work& work, int i) {
   store(f5_2, work.f5_2 + i);
   store(change, work.last_change + i);
   const Mask pending = (load(work.eligible + i) > 0) & (ratio_all < kAsperitiesVanish) &
-                       ~(size(change) <= kShareSettled);
+                       ~(size(change) <= kShareSettled<kDigits>);
   // The others stay, so that the last round serves all of the pack.
   store(select(pending, next, r), work.log_share + i);
   return any(pending);
 }
 
+template <Digits kDigits>
 HWY_NOINLINE void share_loads(const Tables& t, ActiveLanes active, Work& work) {
-  active.keep([&](int i) HWY_ATTR { return newton_step_of_share<true>(t, work, i); });
+  active.keep([&](int i) HWY_ATTR { return newton_step_of_share<kDigits, true>(t, work, i); });
   constexpr int kMostSteps = 8;
   for (int n = 1; n < kMostSteps && !active.empty(); ++n) {
-    active.keep([&](int i) HWY_ATTR { return newton_step_of_share<false>(t, work, i); });
+    active.keep([&](int i) HWY_ATTR { return newton_step_of_share<kDigits, false>(t, work, i); });
   }
 }
 
 /// The contact as it shares its load: film, ellipse and asperities.
+template <Digits kDigits>
 HWY_INLINE void finish_load_sharing(const Tables& t, const ContactBlockInputs& in,
                                     ContactBlockResults& block, Work& work, int i) {
   const Pack film_under_all = load(work.film_under_all + i);
@@ -163,11 +171,11 @@ HWY_INLINE void finish_load_sharing(const Tables& t, const ContactBlockInputs& i
   Pack change = load(work.last_change + i);
   const Pack film_ratio = load(work.film_ratio + i);
   // Settled, and not beyond the tabulated film ratios unless the asperities have vanished.
-  const Mask eligible = (load(work.eligible + i) > 0) &
-                        (alone | ((film_ratio < kAsperityEnd) & (size(change) <= kShareSettled)));
+  const Mask eligible =
+      (load(work.eligible + i) > 0) &
+      (alone | ((film_ratio < kAsperityEnd) & (size(change) <= kShareSettled<kDigits>)));
   store(as_number(eligible), work.eligible + i);
 
-  // The last change is below 2e-6: it is carried on to second order.
   change = where(~alone, change);
   const Pack third = load(work.share_root + i) * fused(change, fused(change, 1.0 / 18, 1.0 / 3), 1);
   const Pack thinner = load(work.thinner + i) * less_product(change, kFilmLoadExponent, 1);

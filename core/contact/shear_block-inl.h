@@ -19,7 +19,7 @@ namespace HWY_NAMESPACE {
 namespace {
 
 /// The shear rate, and logarithms and powers that stay while the temperature is sought.
-template <class Growth>
+template <class Growth, Digits kDigits>
 HWY_INLINE void prepare_shear(const Tables& t, Pack slide, Pack film, Pack pressure,
                               double* shear_rate, Work& work, int i) {
   const double rim_limit = t.shear.lubricant.limiting_shear_stress_at_zero_pressure;
@@ -29,13 +29,13 @@ HWY_INLINE void prepare_shear(const Tables& t, Pack slide, Pack film, Pack press
   store(rate, shear_rate + i);
   store(film * inverse, work.per_scaled + i);
   const Pack end_pressure = least(scaled, t.deepest_pressure);
-  const Pack end = logarithm(end_pressure + 1);
-  store(logarithm(rate), work.log_shear_rate + i);
+  const Pack end = logarithm<kDigits>(end_pressure + 1);
+  store(logarithm<kDigits>(rate), work.log_shear_rate + i);
   store(scaled, work.scaled_pressure + i);
   store(end, work.end + i);
-  Growth::prepare_end(t, end, work, i);
+  Growth::template prepare_end<kDigits>(t, end, work, i);
   if (t.limited) {
-    store(logarithm(limiting_shear_stress(rim_limit, t.limit_slope, end_pressure)),
+    store(logarithm<kDigits>(limiting_shear_stress(rim_limit, t.limit_slope, end_pressure)),
           work.end_log_limit + i);
     store(mean_limiting_shear_stress(rim_limit, t.limit_slope, scaled), work.all_limit + i);
   }

@@ -34,6 +34,10 @@ class FrozenFriction {
     }
     nodes_.push_back({phase, 0, load, value});
   }
+  /// The same for phases that are all 1/`per_width` apart.
+  void add_evenly(double phase, const FrictionArms& value, double load, double per_width) {
+    nodes_.push_back({phase, per_width, load, value});
+  }
   /// The last value added; zero arms if there is none.
   FrictionArms last() const { return nodes_.empty() ? FrictionArms{} : nodes_.back().value; }
 

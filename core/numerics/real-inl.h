@@ -12,13 +12,11 @@
 
 #include <cmath>
 
+#include "core/numerics/digits.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tribodyn {
 namespace HWY_NAMESPACE {
-
-// Digits of packs: kFull is within 2 units in the last place, kHalf within 2e-8 (for iterations
-// that are corrected afterwards). Other numbers always have all digits.
-enum class Digits { kFull, kHalf };
 
 template <Digits kDigits>
 HWY_INLINE double exponential(double x) {

@@ -115,7 +115,7 @@ double MultipleShooting::newton_step() {
   throw_if_interrupted();
   const bool anew = !orbit_.jacobian || orbit_.cycle_derivatives == nullptr ||
                     orbit_.cycle_derivatives->steps != steps_;
-  if (anew) derivatives_.resize(CycleDerivatives::kMatrix, steps_);
+  if (anew) derivatives_.resize_for_overwrite(CycleDerivatives::kMatrix, steps_);
   if (!rk4_steps(instruction_set_, block_, response_, end_, anew ? &derivatives_ : nullptr)) {
     return kBrokenDown;
   }

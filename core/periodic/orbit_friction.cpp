@@ -151,9 +151,10 @@ double OrbitFigures::distance(const OrbitFigures& other) const {
 }
 
 OrbitFriction::OrbitFriction(GearPairSystem& system, const FlankContactBatch& contacts,
-                             std::optional<double> coefficient)
+                             double tolerance, std::optional<double> coefficient)
     : system_(system),
       contacts_(contacts),
+      digits_(tolerance >= kHalfDigitsTolerance ? Digits::kHalf : Digits::kFull),
       coefficient_(coefficient),
       geometries_(contacts.model().reduced_modulus(), contacts.model().options()) {}
 
@@ -213,7 +214,7 @@ bool OrbitFriction::solve_contacts(const ContactGeometries& geometries, int coun
       geometries, 0, count,
       {gathered_[kGatheredLoad], gathered_[kGatheredPinionX], gathered_[kGatheredPinionY],
        gathered_[kGatheredGearX], gathered_[kGatheredGearY]},
-      results);
+      results, digits_);
   system_.count_contacts(count);
   for (int i = 0; i < count; ++i) {
     if (status_[i] != ContactStatus::kOk) system_.refuse(status_[i]);
@@ -285,6 +286,7 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
   f = {};
   least_pressing_force_ = 1e300;
   const int last = 2 * block.grid.steps();
+  const double per_width = static_cast<double>(last) / contacts.stride;
   double low = 1e300, high = -1e300, squares = 0, time = 0;
   for (int place = 0, node = 0; node <= last; ++place, node += contacts.stride) {
     const Columns& at = node % 2 == 0 ? response.start : response.middle;
@@ -297,8 +299,9 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
       loss += gathered_[kGatheredSlidingSpeed][n] * contact_friction[n];
     }
     const double load = block.side * at[kMeshForceRow][lane];
-    friction.add(static_cast<double>(node) / last, {torque.pinion / load, torque.gear / load},
-                 load);
+    const double per_load = 1 / load;
+    friction.add_evenly(static_cast<double>(node) / last,
+                        {torque.pinion * per_load, torque.gear * per_load}, load, per_width);
     least_pressing_force_ = std::min(least_pressing_force_, load);
     // By Simpson's rule, or by trapezoids where there are no middles.
     const double inside = contacts.stride == 2 ? 6 : node % 2 == 0 ? 2 : 4;

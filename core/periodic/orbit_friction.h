@@ -66,11 +66,16 @@ struct OrbitFigures {
   double distance(const OrbitFigures& other) const;
 };
 
+/// Relative; ten times the largest error of FlankContactBatch with half of the digits.
+inline constexpr double kHalfDigitsTolerance = 3e-4;
+
 /// Evaluates friction on a whole orbit: all its contacts are solved together.
 class OrbitFriction {
  public:
-  /// Keeps the references. With a `coefficient` friction is Coulomb's, and no contact is solved.
-  OrbitFriction(GearPairSystem& system, const FlankContactBatch& contacts,
+  /// Keeps the references. `tolerance`: of the orbit's figures, relative; from
+  /// kHalfDigitsTolerance on contacts are solved with half of the digits. With a `coefficient`
+  /// friction is Coulomb's, and no contact is solved.
+  OrbitFriction(GearPairSystem& system, const FlankContactBatch& contacts, double tolerance,
                 std::optional<double> coefficient = std::nullopt);
 
   /// Evaluates friction on the pieces of an orbit, and all figures but the torque. Where the load
@@ -104,6 +109,7 @@ class OrbitFriction {
 
   GearPairSystem& system_;
   const FlankContactBatch& contacts_;
+  const Digits digits_;
   const std::optional<double> coefficient_;
   ContactGeometries geometries_;
   std::vector<int> first_;       // sample of each piece

@@ -50,7 +50,9 @@ bool picard_iterate(Shooting& shooting, const ShootingOptions& options, Periodic
 
 OrbitSolver::OrbitSolver(const PeriodicProblem& problem, SolverWork& work,
                          std::optional<double> coefficient)
-    : problem_(problem), friction_(problem.system, problem.contacts, coefficient), work_(work) {}
+    : problem_(problem),
+      friction_(problem.system, problem.contacts, problem.tolerance, coefficient),
+      work_(work) {}
 
 bool OrbitSolver::solve_without_friction(const MeshGrid& grid, const ShootingOptions& options,
                                          PeriodicOrbit& orbit) {

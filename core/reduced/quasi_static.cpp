@@ -99,7 +99,9 @@ std::vector<double> transmission_errors(const GearPairSystem& system, const Mesh
 class PicardIteration {
  public:
   explicit PicardIteration(const PeriodicProblem& problem)
-      : problem_(problem), system_(problem.system), friction_(problem.system, problem.contacts) {}
+      : problem_(problem),
+        system_(problem.system),
+        friction_(problem.system, problem.contacts, problem.tolerance) {}
 
   /// Iterates from the friction and the figures of `orbit` until the Picard error is below
   /// `enough`.
@@ -296,7 +298,7 @@ double quasi_static_model_error(const PeriodicProblem& problem, const PeriodicOr
                                   std::abs(system.torques().pinion);
   if (!(least_force(system, grid, moving) - unresolved_force > kLeastForce)) return kUnknown;
 
-  OrbitFriction together(system, problem.contacts);
+  OrbitFriction together(system, problem.contacts, problem.tolerance);
   OrbitFigures figures;
   if (!together.evaluate(grid, pieces_of(system, moving), 0, friction, figures)) {
     system.take_refusal();

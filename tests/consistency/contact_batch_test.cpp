@@ -24,45 +24,67 @@ double batch_difference(double a, double b) {
 }
 
 /// The greatest relative difference of all figures; shares of an area differ absolutely.
-double batch_difference(const ContactSolution& a, const ContactSolution& b) {
+/// `negligible`: of the load and of the friction, a part of the asperities that need not agree.
+double batch_difference(const ContactSolution& a, const ContactSolution& b, double negligible = 0) {
   if (a.status != b.status || a.limiting_stress_at_centre != b.limiting_stress_at_centre) {
     return std::numeric_limits<double>::infinity();
   }
+  const auto of_asperities = [&](double x, double y, double whole) {
+    return std::abs(x - y) <= negligible * whole ? 0 : batch_difference(x, y);
+  };
   return std::max({batch_difference(a.friction, b.friction),
                    batch_difference(a.viscous_friction, b.viscous_friction),
-                   batch_difference(a.boundary_friction, b.boundary_friction),
+                   of_asperities(a.boundary_friction, b.boundary_friction, b.friction),
                    batch_difference(a.contact_temperature, b.contact_temperature),
                    batch_difference(a.central_film_thickness, b.central_film_thickness),
                    batch_difference(a.film_ratio, b.film_ratio),
                    batch_difference(a.maximum_pressure, b.maximum_pressure),
                    batch_difference(a.film_load, b.film_load),
-                   batch_difference(a.asperity_load, b.asperity_load),
+                   of_asperities(a.asperity_load, b.asperity_load, b.film_load),
                    batch_difference(a.sliding_speed, b.sliding_speed),
                    batch_difference(a.shear_rate, b.shear_rate),
                    batch_difference(a.mean_shear_stress, b.mean_shear_stress),
                    std::abs(a.limiting_stress_area_share - b.limiting_stress_area_share)});
 }
 
-constexpr double kTolerance = 1e-10;
+/// The greatest difference of a batch.
+double tolerance_of(Digits digits) { return digits == Digits::kFull ? 1e-10 : 3e-5; }
 
-/// Compares every instruction set with the reference; returns how many contacts the last one left
-/// to the reference.
+/// The greatest differences that were seen with all and with half of the digits.
+struct Worst {
+  double full = 0, half = 0;
+};
+
+std::ostream& operator<<(std::ostream& out, const Worst& worst) {
+  return out << worst.full << ", with half of the digits " << worst.half;
+}
+
+/// Compares every instruction set with the reference, with all and with half of the digits. Returns
+/// how many contacts the last one left to the reference with all digits.
 std::size_t expect_agreement(const ContactCase& c, const std::vector<ContactConditions>& conditions,
-                             double* worst = nullptr) {
+                             Worst* worst = nullptr) {
   const FlankContactModel model = c.model();
   ContactArrays arrays(conditions, c.solid, c.options);
+  std::vector<ContactSolution> reference;
+  for (const ContactConditions& k : conditions) reference.push_back(model.solve(k));
   std::size_t by_reference = 0;
   for (const InstructionSet set : supported_instruction_sets()) {
     SCOPED_TRACE(FlankContactBatch::name(set));
-    by_reference = arrays.solve(FlankContactBatch(model, set));
-    for (std::size_t i = 0; i < conditions.size(); ++i) {
-      const ContactSolution reference = model.solve(conditions[i]);
-      const double off = batch_difference(arrays.solution(i), reference);
-      EXPECT_LE(off, kTolerance) << "contact " << i << ", "
-                                 << contact_status_name(arrays.solution(i).status) << ", friction "
-                                 << arrays.solution(i).friction << " N for " << reference.friction
-                                 << " N";
-      if (worst != nullptr) *worst = std::max(*worst, off);
+    for (const Digits digits : {Digits::kHalf, Digits::kFull}) {
+      by_reference = arrays.solve(FlankContactBatch(model, set), digits);
+      double most = 0;
+      for (std::size_t i = 0; i < conditions.size(); ++i) {
+        const double negligible = digits == Digits::kFull ? 0 : 1e-7;
+        const double off = batch_difference(arrays.solution(i), reference[i], negligible);
+        EXPECT_LE(off, tolerance_of(digits))
+            << (digits == Digits::kFull ? "all" : "half of the") << " digits, contact " << i << ", "
+            << contact_status_name(arrays.solution(i).status) << ", friction "
+            << arrays.solution(i).friction << " N for " << reference[i].friction << " N";
+        most = std::max(most, off);
+      }
+      if (worst == nullptr) continue;
+      double& of_digits = digits == Digits::kFull ? worst->full : worst->half;
+      of_digits = std::max(of_digits, most);
     }
   }
   return by_reference;
@@ -75,7 +97,7 @@ TEST(ContactBatch, RandomStates) {
   Draw draw(71);
   SCOPED_TRACE(draw.seed());
   std::size_t by_reference = 0;
-  double worst = 0;
+  Worst worst;
   for (int n = 0; n < kCases; ++n) {
     SCOPED_TRACE("case " + std::to_string(n));
     ContactCase c = random_contact_case(draw);
@@ -95,14 +117,14 @@ TEST(ContactBatch, RandomStates) {
     }
   }
   RecordProperty("share_by_reference", std::to_string(1.0 * by_reference / (kCases * kEach)));
-  RecordProperty("greatest_difference", std::to_string(worst));
+  RecordProperty("greatest_difference", std::to_string(worst.full));
   std::cout << "left to the reference: " << 100.0 * by_reference / (kCases * kEach)
             << " %, greatest difference " << worst << "\n";
   EXPECT_LT(by_reference, kCases * kEach / 2);
 }
 
 TEST(ContactBatch, RealisticContactsNeverNeedTheReference) {
-  double worst = 0;
+  Worst worst;
   for (const int fluid : {1, 2, 3}) {
     for (const double sump : {20.0, 40.0, 90.0}) {
       const Scene scene = reference_scene(fluid, sump);
@@ -117,6 +139,7 @@ TEST(ContactBatch, RealisticContactsNeverNeedTheReference) {
       }
     }
   }
+  EXPECT_LT(worst.half, 2e-6);
   std::cout << "greatest difference " << worst << "\n";
 }
 
@@ -141,7 +164,7 @@ TEST(ContactBatch, RandomStatesUnderTheImprovedYasutomiLaw) {
   Draw draw(75);
   SCOPED_TRACE(draw.seed());
   std::size_t by_reference = 0;
-  double worst = 0;
+  Worst worst;
   for (int n = 0; n < kCases; ++n) {
     SCOPED_TRACE("case " + std::to_string(n));
     ContactCase c = random_contact_case(draw);
@@ -165,7 +188,7 @@ TEST(ContactBatch, RandomStatesUnderTheImprovedYasutomiLaw) {
 // The table of the law ends near 1 GPa in cold oil: a contact beyond it whose stress is nearly
 // nowhere limited goes to the reference.
 TEST(ContactBatch, RealisticContactsUnderTheImprovedYasutomiLawRarelyNeedTheReference) {
-  double worst = 0;
+  Worst worst;
   std::size_t by_reference = 0, all = 0;
   for (const double sump : {20.0, 40.0, 90.0}) {
     const Scene scene = reference_scene(1, sump);
@@ -430,7 +453,8 @@ TEST(ContactBatch, AnyStartLeadsToTheSameAnswer) {
       arrays.start_from_last_temperature(factor);
       arrays.solve(batch);
       for (std::size_t i = 0; i < arrays.size(); ++i) {
-        EXPECT_LE(batch_difference(arrays.solution(i), cold[i]), kTolerance) << factor << " " << i;
+        EXPECT_LE(batch_difference(arrays.solution(i), cold[i]), tolerance_of(Digits::kFull))
+            << factor << " " << i;
       }
     }
   }

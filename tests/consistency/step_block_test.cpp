@@ -397,7 +397,7 @@ struct OrbitBench {
 
   /// By one march of the whole cycle after the other.
   PeriodicOrbit alone(int steps) {
-    OrbitFriction friction(system, batch);
+    OrbitFriction friction(system, batch, problem.tolerance);
     PeriodicOrbit orbit = origin;
     SingleShooting shooting(problem, friction, grids.with_steps(steps), options, orbit);
     EXPECT_TRUE(shooting.solve(1e-3));
@@ -479,7 +479,7 @@ TEST(MultipleShooting, FindsWhatSingleShootingFindsWhereFlanksPull) {
       OrbitBench bench(20.1, speed, wheel);
       PeriodicOrbit orbit = bench.origin;
       const MeshGrid& grid = bench.grids.with_steps(48);
-      OrbitFriction friction(bench.system, bench.batch);
+      OrbitFriction friction(bench.system, bench.batch, bench.problem.tolerance);
       CycleStorage storage;
       MultipleShooting shooting(bench.problem, friction, storage, grid, bench.options, orbit);
       ASSERT_TRUE(shooting.solve(1e-3));

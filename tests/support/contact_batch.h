@@ -65,8 +65,8 @@ class ContactArrays {
     for (std::size_t i = 0; i < size(); ++i) start_[i] = factor * out_[3][i];
   }
   /// Solves all contacts. Returns the number of contacts that the reference solved.
-  std::size_t solve(const FlankContactBatch& batch) {
-    return batch.solve(geometries_, 0, size(), conditions(), results());
+  std::size_t solve(const FlankContactBatch& batch, Digits digits = Digits::kFull) {
+    return batch.solve(geometries_, 0, size(), conditions(), results(), digits);
   }
   /// Returns the figures of one contact under the names of the reference; other members are 0.
   ContactSolution solution(std::size_t i) const {

@@ -28,7 +28,6 @@ ShearLaw<Parameter> reference_law() {
 
 // One formula: the same digits and derivatives from each number type.
 TEST(Laws, AgreeOnEveryNumberType) {
-  using laws::Digits;
   using Dual = laws::Dual<double, 1>;
   using DualPack = laws::Dual<laws::Pack, 1>;
   const auto law = reference_law<double>();
