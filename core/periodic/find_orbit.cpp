@@ -18,8 +18,9 @@ namespace {
 constexpr double kPicardShare = 0.4;    // of the tolerance, for the Picard error
 constexpr int kTransientPeriods = 300;  // periods
 constexpr double kSmallFlipMargin = 0.06;
-constexpr double kLittleTension = 0.2;  // of the mean force
-constexpr double kMarchedDoubt = 1e-4;  // about multipliers by the march
+constexpr double kLittleTension = 0.2;     // of the mean force
+constexpr double kDoubtOfFewSteps = 0.05;  // of the mean force: as much may be the error of 8 steps
+constexpr double kMarchedDoubt = 1e-4;     // about multipliers by the march
 constexpr int kMostFailures = 3;
 constexpr int kTapSteps = 40;            // of a mesh cycle: a tap lasts for some percent of it
 constexpr int kStepsPerOscillation = 7;  // show its height to some percent; fewer show nothing
@@ -70,28 +71,40 @@ class GridRefinement {
   }
 
   std::optional<PeriodicOrbit> refine() {
-    const double least =
-        std::max(kStepsPerOscillation * mesh_oscillations(system_, problem_.mean_pinion_speed),
-                 problem_.tolerance < kLooseTolerance || !search_.try_contact_first ? 24.0 : 12.0);
-    if (least > kMostStepsPerCycle) return std::nullopt;
+    const double of_oscillations =
+        kStepsPerOscillation * mesh_oscillations(system_, problem_.mean_pinion_speed);
+    if (of_oscillations > kMostStepsPerCycle) return std::nullopt;
+    const auto steps_from = [&](double fewest) {
+      return static_cast<int>(std::max(of_oscillations, fewest));
+    };
+    const bool loose = problem_.tolerance >= kLooseTolerance && search_.try_contact_first;
+    least_ = steps_from(loose ? 12 : 24);
     if (search_.references != nullptr && problem_.tolerance >= kLooseTolerance) {
-      if (auto found = solve_by_reference(static_cast<int>(least))) return found;
+      if (auto found = solve_by_reference(least_)) return found;
       if (is_over_) return std::nullopt;
       repels_ = doubles_ = false;
     }
-    const StepSequence sequence(system_.mesh().intervals(), static_cast<int>(least));
+    const bool very_loose =
+        loose && problem_.tolerance >= kVeryLooseTolerance && search_.references == nullptr;
+    const int intervals = system_.mesh().intervals();
+    StepSequence sequence(intervals, very_loose ? steps_from(8) : least_);
     constexpr double kUnknown = std::numeric_limits<double>::infinity();
     double excess = kUnknown;
+    const auto after = [&](int steps) {
+      if (!is_in_tension_ || steps >= least_) return sequence.after(steps, excess);
+      sequence = StepSequence(intervals, least_);
+      return sequence.first();
+    };
     for (int steps = sequence.first(); steps <= kMostStepsPerCycle && !is_over_;
-         steps = sequence.after(steps, excess)) {
+         steps = after(steps)) {
       const MeshGrid& grid = problem_.grids.with_steps(steps);
       excess = kUnknown;
       if (!solve_on_grid(grid)) continue;
       const bool is_compared = coarser_.is_possible();
       const double error = is_compared ? step_error(grid) + orbit_.picard_error : 0;
       if (is_compared) excess = error / problem_.tolerance;
-      const bool is_in_tension = options_.bilateral_contact && orbit_.least_pressing_force < 0;
-      if (is_compared && error <= problem_.tolerance && !is_in_tension) {
+      const bool has_tension = options_.bilateral_contact && orbit_.least_pressing_force < 0;
+      if (is_compared && error <= problem_.tolerance && !has_tension) {
         if (!attracts(grid)) return std::nullopt;
         orbit_.estimated_error = error;
         return std::move(orbit_);
@@ -185,7 +198,13 @@ class GridRefinement {
     // The tolerance is shared by the error of the steps and the Picard error.
     options_.tolerance = coarser_.is_possible() ? kPicardShare * problem_.tolerance
                                                 : std::max(5 * problem_.tolerance, 1e-4);
-    bool found = options_.bilateral_contact && solve_in_contact(grid);
+    bool found = false;
+    if (options_.bilateral_contact) {
+      found = solve_in_contact(grid);
+      if (is_in_tension_) return false;
+    } else if (std::exchange(is_in_tension_, false)) {
+      found = solve_with_backlash(grid);
+    }
     if (is_over_) return false;
     if (is_tapping_ && !coarser_.is_possible()) {
       if (grid.steps() < kTapSteps) return false;
@@ -202,20 +221,30 @@ class GridRefinement {
   }
 
   /// Solves under bilateral contact. Under tension contact is lost from then on: under a little, an
-  /// orbit with contact loss near this one is tried; otherwise the start decides.
+  /// orbit with contact loss near this one is tried; otherwise the start decides. On a grid of
+  /// fewer steps than contact loss needs, sets is_in_tension_, and all that is left to the next.
   bool solve_in_contact(const MeshGrid& grid) {
     options_.first_cycles = 0;
     const bool solved = solve(grid);
+    const bool has_few_steps = grid.steps() < least_;
     if (solved && !(orbit_.least_pressing_force < -doubtful_tension_)) {
-      doubtful_tension_ /= 4;
+      if (!has_few_steps) doubtful_tension_ /= 4;
       return true;
     }
-    is_over_ = system_.take_refusal() != ContactStatus::kOk;
+    const bool is_refused = system_.take_refusal() != ContactStatus::kOk;
+    is_in_tension_ = has_few_steps;
+    if (has_few_steps && (!solved || orbit_.least_pressing_force > -kDoubtOfFewSteps)) return false;
+    is_over_ = is_refused;
     options_.bilateral_contact = false;
     orbit_.distance_since_jacobian = std::numeric_limits<double>::infinity();  // made without a gap
     coarser_.clear();
-    if (is_over_) return false;
-    if (solved && orbit_.least_pressing_force >= -kLittleTension) {
+    is_near_ = solved && orbit_.least_pressing_force >= -kLittleTension;
+    return !is_over_ && !has_few_steps && solve_with_backlash(grid);
+  }
+
+  /// Once tension has shown that contact is lost. Returns false if the start decides.
+  bool solve_with_backlash(const MeshGrid& grid) {
+    if (std::exchange(is_near_, false)) {
       if (solver_.solve(grid, options_, orbit_)) return true;
       is_over_ = system_.take_refusal() != ContactStatus::kOk;
       if (is_over_) return false;
@@ -328,7 +357,10 @@ class GridRefinement {
   int failures_ = 0;
   double doubtful_tension_ =
       kTensionForSeparation;  // of the mean force: as little may be the steps' error
-  bool is_tapping_ = false;   // at the start
+  int least_ = 0;             // steps, where contact may be lost
+  bool is_in_tension_ = false,
+       is_near_ = false;     // on fewer steps; as is an orbit with contact loss
+  bool is_tapping_ = false;  // at the start
   bool is_over_ = false, repels_ = false, doubles_ = false;
 };
 

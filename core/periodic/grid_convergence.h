@@ -6,8 +6,8 @@
 
 namespace tribodyn {
 
-/// From this tolerance on twelve steps a mesh cycle may do.
-inline constexpr double kLooseTolerance = 3e-4;
+/// From these tolerances on twelve and eight steps a mesh cycle may do.
+inline constexpr double kLooseTolerance = 3e-4, kVeryLooseTolerance = 5e-4;
 
 /// More steps per mesh cycle are not tried.
 inline constexpr int kMostStepsPerCycle = 4000;

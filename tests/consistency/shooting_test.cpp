@@ -446,7 +446,7 @@ TEST(ScreenedPoints, AreThoseOfThePointAlone) {
       }
     }
   }
-  EXPECT_LT(contacts, 0.65 * contacts_alone);
+  EXPECT_LT(contacts, 0.7 * contacts_alone);
 }
 
 TEST(PointFigures, AreThoseOfTheWholeResult) {
