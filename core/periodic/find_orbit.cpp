@@ -7,6 +7,7 @@
 
 #include "core/numerics/square.h"
 #include "core/periodic/grid_convergence.h"
+#include "core/periodic/orbit_sensitivity.h"
 #include "core/periodic/orbit_solver.h"
 #include "core/periodic/steady_state.h"
 #include "core/periodic/tapping_start.h"
@@ -20,7 +21,9 @@ constexpr int kTransientPeriods = 300;  // periods
 constexpr double kSmallFlipMargin = 0.06;
 constexpr double kLittleTension = 0.2;     // of the mean force
 constexpr double kDoubtOfFewSteps = 0.05;  // of the mean force: as much may be the error of 8 steps
-constexpr double kMarchedDoubt = 1e-4;     // about multipliers by the march
+// About multipliers with friction by derivatives on a grid: at 12 steps they err by 1e-4.
+constexpr double kDoubtOfSteps = 5e-4;
+constexpr double kMarchedDoubt = 1e-4;  // about multipliers by the march
 constexpr int kMostFailures = 3;
 constexpr int kTapSteps = 40;            // of a mesh cycle: a tap lasts for some percent of it
 constexpr int kStepsPerOscillation = 7;  // show its height to some percent; fewer show nothing
@@ -214,8 +217,10 @@ class GridRefinement {
     if (is_over_) return false;
     if (found && coarser_.is_possible()) found = iterate_further(grid);
     if (found) return true;
+    // An orbit of a coarser grid that is lost is near a fold: some grids have it, others do not.
+    failures_ += coarser_.is_possible() ? 2 : 1;
     is_over_ = system_.take_refusal() != ContactStatus::kOk || !search_.allow_transient_march ||
-               ++failures_ == kMostFailures;
+               failures_ >= kMostFailures;
     coarser_.clear();
     return false;
   }
@@ -267,7 +272,7 @@ class GridRefinement {
   /// Newton's method converges to the orbit that is near, if need be on another grid; others are
   /// found after a transient.
   bool march_then_solve(const MeshGrid& grid) {
-    const bool is_last = failures_ + 1 == kMostFailures;
+    const bool is_last = failures_ + 1 >= kMostFailures;
     for (const int cycles : {is_tapping_ ? 0 : search_.few_cycles, search_.first_cycles}) {
       if (!coarser_.is_possible()) cycles_left_ -= cycles * search_.period;
       if (cycles_left_ < 0) {
@@ -317,9 +322,8 @@ class GridRefinement {
     if (orbit_.jacobian->floquet_radius_below(1 - doubt)) return true;
     double multiplier = orbit_.jacobian->largest_multiplier();
     if (std::abs(multiplier - 1) <= doubt) {
-      if (!march_multiplier()) return false;
-      multiplier = *orbit_.marched_multiplier;
-      doubt = kMarchedDoubt;
+      if (!find_multiplier_with_friction(doubt)) return false;
+      multiplier = *orbit_.multiplier_with_friction;
     }
     if (multiplier < 1 - doubt) return true;
     // If the multiplier does not decide, the doubled period is tried.
@@ -329,20 +333,32 @@ class GridRefinement {
     return false;
   }
 
+  /// By the derivatives of the orbit, or if they do not decide, by the march. Sets the doubt.
+  bool find_multiplier_with_friction(double& doubt) {
+    orbit_.multiplier_with_friction = multiplier_with_friction(problem_, orbit_);
+    doubt = kDoubtOfSteps;
+    const bool is_clear =
+        orbit_.multiplier_with_friction && std::abs(*orbit_.multiplier_with_friction - 1) > doubt;
+    if (is_clear) return true;
+    doubt = kMarchedDoubt;
+    return march_multiplier();
+  }
+
   bool march_multiplier() {
+    orbit_.multiplier_with_friction.reset();
     MarchOptions march;
     march.relative_tolerance = 1e-8;
     march.interrupted = problem_.interrupted;
     system_.set_torques(orbit_.torques);
     system_.solve_together(&problem_.contacts);
     try {
-      orbit_.marched_multiplier =
+      orbit_.multiplier_with_friction =
           marched_multiplier(problem_, orbit_.pieces.front().start, orbit_.period, march, work_);
     } catch (const Refusal&) {
       system_.take_refusal();
     }
     system_.solve_together(nullptr);
-    return orbit_.marched_multiplier.has_value();
+    return orbit_.multiplier_with_friction.has_value();
   }
 
   const PeriodicProblem& problem_;

@@ -13,7 +13,7 @@ namespace tribodyn {
 //     error and the Picard error are within the tolerance (grid_convergence.h). First under
 //     bilateral contact; if that needs tension, from periods integrated with backlash.
 //  2. The largest Floquet multiplier decides whether the orbit attracts: by the Jacobian of the
-//     Poincare map, and near 1 by finite differences of the event-exact march.
+//     Poincare map, and near 1 by that of a map whose friction follows the motion.
 //  3. After a flip bifurcation the period is doubled, from beside the orbit that repels; near a
 //     fold, or where friction decides the branch, hundreds of periods are integrated first, with
 //     friction renewed on the way. An orbit of twice its true period is halved.

@@ -8,6 +8,7 @@
 
 #include "core/integrate/piece_adjoint.h"
 #include "core/integrate/rk4_with_events.h"
+#include "core/periodic/leading_multiplier.h"
 #include "core/periodic/orbit_contacts.h"
 
 namespace tribodyn {
@@ -51,8 +52,26 @@ class OrbitDifferentiator {
         model_(problem.contacts.model()),
         contacts_(system_, grid_, problem.contacts, model_, orbit, light_load_) {}
 
-  std::optional<OrbitSensitivity> run() {
-    if (!contacts_.differentiate()) return std::nullopt;
+  std::optional<OrbitSensitivity> run() { return pass_through() ? close() : std::nullopt; }
+
+  std::optional<double> largest_multiplier() {
+    if (!pass_through()) return std::nullopt;
+    using Square = Eigen::Matrix<double, kSectionStates, kSectionStates>;
+    const auto scale = [&](int i) { return scales_.of(system_.mesh(), i + 1); };
+    Square monodromy;
+    for (int i = 0; i < kSectionStates; ++i) {
+      for (int j = 0; j < kSectionStates; ++j) {
+        monodromy(i, j) = adjoint_[kOfEnd][j + 1][i + 1] * scale(j) / scale(i);
+      }
+    }
+    return leading_multiplier(monodromy).modulus;
+  }
+
+ private:
+  /// Passes the adjoints from the end of the period to its start. Returns false if a contact has no
+  /// derivatives.
+  bool pass_through() {
+    if (!contacts_.differentiate()) return false;
     find_extremes();
     for (int i = 0; i < kRates; ++i) adjoint_[kOfEnd][i][i] = 1;
     for (std::size_t i = orbit_.pieces.size(); i-- > 0;) {
@@ -60,10 +79,9 @@ class OrbitDifferentiator {
       if (i + 1 < orbit_.pieces.size()) cross_event(i);
       pass_piece(i);
     }
-    return close();
+    return true;
   }
 
- private:
   static constexpr double kLightShare = 1e-3;  // of the mean force: see Shooting::light_load()
   /// Of the light load: what an event's location leaves of the force there.
   static constexpr double kNoLoad = 1e-3;
@@ -483,6 +501,11 @@ class OrbitDifferentiator {
 std::optional<OrbitSensitivity> orbit_sensitivity(const PeriodicProblem& problem,
                                                   const PeriodicOrbit& orbit) {
   return OrbitDifferentiator(problem, orbit).run();
+}
+
+std::optional<double> multiplier_with_friction(const PeriodicProblem& problem,
+                                               const PeriodicOrbit& orbit) {
+  return OrbitDifferentiator(problem, orbit).largest_multiplier();
 }
 
 }  // namespace tribodyn

@@ -42,7 +42,7 @@ struct PeriodicOrbit {
   /// steps and of the Picard iteration.
   double estimated_error = 0;
   /// Floquet, modulus, with friction in the loop; absent where the map alone is clear enough.
-  std::optional<double> marched_multiplier;
+  std::optional<double> multiplier_with_friction;
   bool contact_loss = false;
   /// Smallest compression of touching flanks over the mean force; negative: tension under bilateral
   /// contact.

@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <complex>
 #include <limits>
 
 #include "core/driveline/gear_pair_system.h"
@@ -84,22 +83,13 @@ double PoincareMapJacobian::bound_of_floquet_radius(double enough) const {
   }
 }
 
-double PoincareMapJacobian::largest_multiplier() const {
-  if (largest_multiplier_ >= 0) return largest_multiplier_;
-  Eigen::Matrix<std::complex<double>, kUnknowns - 1, 1> multipliers =
-      Eigen::EigenSolver<Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1>>(monodromy_, false)
-          .eigenvalues();
-  Eigen::Index free = 0, largest = 0;
-  (multipliers.array() - 1.0).abs().minCoeff(&free);
-  multipliers(free) = 0;
-  largest_multiplier_ = multipliers.cwiseAbs().maxCoeff(&largest);
-  leading_multiplier_is_negative_ = multipliers(largest).real() < 0;
-  return largest_multiplier_;
-}
+double PoincareMapJacobian::largest_multiplier() const { return leading().modulus; }
 
-bool PoincareMapJacobian::leading_multiplier_is_negative() const {
-  largest_multiplier();
-  return leading_multiplier_is_negative_;
+bool PoincareMapJacobian::leading_multiplier_is_negative() const { return leading().is_negative; }
+
+const LeadingMultiplier& PoincareMapJacobian::leading() const {
+  if (!leading_) leading_ = leading_multiplier(monodromy_);
+  return *leading_;
 }
 
 }  // namespace tribodyn

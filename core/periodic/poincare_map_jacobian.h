@@ -2,8 +2,10 @@
 
 #include <Eigen/LU>
 #include <limits>
+#include <optional>
 
 #include "core/integrate/step_sensitivity.h"
+#include "core/periodic/leading_multiplier.h"
 
 namespace tribodyn {
 
@@ -38,12 +40,12 @@ class PoincareMapJacobian {
   Eigen::Matrix<double, kUnknowns - 1, 1> flip_direction() const;
 
  private:
+  const LeadingMultiplier& leading() const;
   double bound_of_floquet_radius(double enough) const;
 
   Eigen::PartialPivLU<Eigen::Matrix<double, kUnknowns, kUnknowns>> factors_;
   Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1> monodromy_;  // scaled
-  mutable bool leading_multiplier_is_negative_ = false;
-  mutable double largest_multiplier_ = -1;  // not computed yet
+  mutable std::optional<LeadingMultiplier> leading_;               // not computed yet
   mutable double flip_margin_ = -1;
   mutable double floquet_radius_bound_ = std::numeric_limits<double>::infinity();
 };

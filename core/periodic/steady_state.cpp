@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/periodic/leading_multiplier.h"
 #include "core/periodic/period_correction.h"
 
 namespace tribodyn {
@@ -101,7 +102,7 @@ class PeriodMap {
     march(moved, period);
     const Vector image = pack(moved);
     constexpr int kStates = kWheelSpeed;  // the seven of the section
-    Eigen::Matrix<double, kStates, kStates> jacobian;
+    Eigen::Matrix<double, kStates, kStates> monodromy;
     for (int j = 0; j < kStates; ++j) {
       Vector shifted = origin;
       shifted(j) += kStep;
@@ -109,16 +110,11 @@ class PeriodMap {
       unpack(shifted, moved);
       march(moved, period);
       const Vector change = pack(moved) - image;
-      for (int i = 0; i < kStates; ++i) jacobian(i, j) = change(i) / kStep;
+      for (int i = 0; i < kStates; ++i) monodromy(i, j) = change(i) / kStep;
     }
     system_.set_torques(torques);
     system_.regime = regime;
-    Eigen::VectorXcd multipliers =
-        Eigen::EigenSolver<Eigen::MatrixXd>(jacobian, false).eigenvalues();
-    Eigen::Index free = 0;
-    (multipliers.array() - 1.0).abs().minCoeff(&free);
-    multipliers(free) = 0;
-    return multipliers.cwiseAbs().maxCoeff();
+    return leading_multiplier(monodromy).modulus;
   }
 
  private:

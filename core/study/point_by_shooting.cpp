@@ -85,8 +85,8 @@ std::optional<ShotPoint> solve_by_shooting(const PointProblem& problem, PointSta
   static_cast<SolverWork&>(out.statistics) = work;
   out.statistics.contact_solutions = problem.system.contact_solutions();
   out.statistics.periodicity_defect = orbit->defect;
-  out.statistics.largest_multiplier = orbit->marched_multiplier
-                                          ? *orbit->marched_multiplier
+  out.statistics.largest_multiplier = orbit->multiplier_with_friction
+                                          ? *orbit->multiplier_with_friction
                                           : orbit->jacobian->largest_multiplier();
   return shot;
 }

@@ -1,9 +1,10 @@
-// Order of the steps of a periodic orbit: its state against that on a much finer grid.
+// Periodic orbits on grids of steps: the order of their states, and their Floquet multipliers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/periodic/orbit_sensitivity.h"
 #include "core/periodic/orbit_solver.h"
 #include "core/periodic/steady_state.h"
 #include "core/study/prepared_scene.h"
@@ -33,19 +34,23 @@ class OrbitOrder : public testing::TestWithParam<OrbitCase> {
     orbit.torques = {c.pinion_torque, c.pinion_torque * 36 / 13};
     system_.set_torques(orbit.torques);
     orbit.state = static_start(system_, c.pinion_speed, 0, 0, 0);
-    const PeriodicProblem problem{system_,
-                                  prepared_.contacts(),
-                                  prepared_.gear_set().grids(),
-                                  c.pinion_speed,
-                                  false,
-                                  options.tolerance,
-                                  {}};
+    const PeriodicProblem problem = this->problem(options.tolerance);
     SolverWork work;
     OrbitSolver solver(problem, work);
     const MeshGrid& grid = prepared_.gear_set().grids().with_steps(steps);
     ASSERT_TRUE(solver.solve_without_friction(grid, options, orbit)) << steps;
     ASSERT_TRUE(solver.solve(grid, options, orbit)) << steps;
     ASSERT_EQ(orbit.contact_loss, c.contact_loss) << steps;
+  }
+
+  PeriodicProblem problem(double tolerance) {
+    return {system_,
+            prepared_.contacts(),
+            prepared_.gear_set().grids(),
+            GetParam().pinion_speed,
+            false,
+            tolerance,
+            {}};
   }
 
   /// The largest relative difference of the states at the section.
@@ -76,6 +81,27 @@ TEST_P(OrbitOrder, IsFourInContactAndAcrossContactLoss) {
   EXPECT_LT(coarse_error, 1e-4);
   EXPECT_NEAR(std::log(coarse_error / fine_error) / std::log(kFine / kCoarse), 4, 0.4)
       << coarse_error << " and " << fine_error;
+}
+
+// By the derivatives of the contacts, against finite differences of the event-exact march.
+TEST_P(OrbitOrder, MultiplierWithFrictionIsThatOfTheMarch) {
+  const OrbitCase& c = GetParam();
+  for (const int steps : {24, 96}) {
+    PeriodicOrbit orbit;
+    ASSERT_NO_FATAL_FAILURE(find(steps, orbit));
+    const PeriodicProblem problem = this->problem(1e-9);
+    const auto by_derivatives = multiplier_with_friction(problem, orbit);
+    ASSERT_TRUE(by_derivatives);
+    MarchOptions march;
+    march.relative_tolerance = 1e-8;
+    SolverWork work;
+    system_.set_torques(orbit.torques);
+    system_.solve_together(&prepared_.contacts());
+    const double marched =
+        marched_multiplier(problem, orbit.pieces.front().start, orbit.period, march, work);
+    system_.solve_together(nullptr);
+    EXPECT_NEAR(*by_derivatives, marched, steps == 24 ? 3e-4 : 1e-4) << c.name << ' ' << steps;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Places, OrbitOrder,

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace tribodyn {
+
+/// The Floquet multiplier of the largest modulus, but for the one nearest to 1: the train as a
+/// whole runs on at any speed.
+struct LeadingMultiplier {
+  double modulus = 0;
+  bool is_negative = false;  ///< its real part: a disturbance then changes its side every period
+};
+
+/// Of the derivatives of the seven states of the section by themselves a period earlier.
+LeadingMultiplier leading_multiplier(const Eigen::Matrix<double, 7, 7>& monodromy);
+
+}  // namespace tribodyn
