@@ -44,29 +44,6 @@ void add_rows_state(Application& application, const StoredCampaign& stored, cons
   }
 }
 
-/// Reads the filter of a list of campaigns.
-std::vector<Restriction> campaign_restrictions(const std::string& filter, Violations& violations) {
-  std::vector<Restriction> out = parse_filter(filter, kCampaigns, violations);
-  for (Restriction& each : out) {
-    using enum Restriction::Comparison;
-    const bool is_label = each.key.starts_with("labels.");
-    const bool is_equality = each.comparison == kEqual || each.comparison == kNotEqual;
-    if (each.key == "name") {
-      violations.push_back({"filter", "lists cannot be filtered by name; use GetCampaign"});
-    } else if (!is_equality && !(is_label && each.comparison == kPresent) &&
-               !(each.key == "display_name" && each.comparison == kContains)) {
-      violations.push_back({"filter", each.key + ": allowed: = or !=, of labels also :*, of "
-                                                 "display_name also :"});
-    }
-    const std::string* word = std::get_if<std::string>(&each.value);
-    v1::Campaign::State state = v1::Campaign::STATE_UNSPECIFIED;
-    if (each.key == "state" && word != nullptr && v1::Campaign::State_Parse(*word, &state)) {
-      each.value = std::int64_t{state};
-    }
-  }
-  return out;
-}
-
 /// The answer to a request that changed a campaign's state.
 Outcome<v1::Campaign> changed_answer(Application& application, const std::string& name,
                                      const std::optional<StoredCampaign>& stored) {
@@ -115,7 +92,8 @@ Outcome<v1::ListCampaignsResponse> list_campaigns(Application& application,
   const int size = page_size(request.page_size(), kDefaultCampaignPage, violations);
   const std::string scope = full_name(call.project, kCampaigns) + "\n" + request.filter();
   std::int64_t before = 0;
-  std::vector<Restriction> restrictions = campaign_restrictions(request.filter(), violations);
+  std::vector<Restriction> restrictions =
+      parse_job_filter(request.filter(), kCampaigns, violations);
   const ReadMask mask(request.read_mask(), *v1::Campaign::descriptor(), violations);
   if (!request.page_token().empty()) {
     const auto token = parse_page_token(application.page_token_key, scope, request.page_token());

@@ -344,6 +344,34 @@ std::vector<Restriction> parse_filter(std::string_view filter, const std::string
   return FilterReader(collection, violations).read(filter);
 }
 
+std::vector<Restriction> parse_job_filter(std::string_view filter, const std::string& collection,
+                                          Violations& violations) {
+  const auto message = new_resource(collection);
+  const auto& descriptor = *message->GetDescriptor();
+  std::vector<Restriction> out = parse_filter(filter, collection, violations);
+  for (Restriction& each : out) {
+    const bool is_equality =
+        each.comparison == Comparison::kEqual || each.comparison == Comparison::kNotEqual;
+    const bool is_label = each.key.starts_with(kLabels);
+    if (each.key == "name") {
+      violations.push_back(
+          {"filter", "lists cannot be filtered by name; use Get" + descriptor.name()});
+    } else if (!is_equality && kind_of(each.key, collection) != PropertyKind::kTime &&
+               !(is_label && each.comparison == Comparison::kPresent) &&
+               !(each.key == "display_name" && each.comparison == Comparison::kContains)) {
+      violations.push_back({"filter", each.key + ": allowed: = or !=, of labels also :*, of "
+                                                 "display_name also :"});
+    }
+    const std::string* word = std::get_if<std::string>(&each.value);
+    const FieldDescriptor* field = descriptor.FindFieldByName(each.key);
+    if (word == nullptr || field == nullptr || field->enum_type() == nullptr) continue;
+    if (const auto* value = find_value(*field->enum_type(), *word)) {
+      each.value = std::int64_t{value->number()};
+    }
+  }
+  return out;
+}
+
 Order parse_order(std::string_view order_by, const std::string& collection,
                   Violations& violations) {
   Scanner scanner(order_by.substr(0, kMaximumFilterLength));

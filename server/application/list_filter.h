@@ -19,6 +19,12 @@ namespace tribodyn::server {
 std::vector<Restriction> parse_filter(std::string_view filter, const std::string& collection,
                                       Violations& violations);
 
+/// Parses a filter on a list of simulations or campaigns, whose conditions are of the table's
+/// columns: the value of a state is its number. Adds a violation for a comparison that a column
+/// does not have.
+std::vector<Restriction> parse_job_filter(std::string_view filter, const std::string& collection,
+                                          Violations& violations);
+
 /// A condition of a filter as it stands there.
 struct FilterCondition {
   std::string field;

@@ -52,6 +52,9 @@ void add_enum(const EnumDescriptor& descriptor, v1::Schema& out) {
 
 void add_vocabularies(v1::Schema& out) {
   add_words("history.columns", history_column_names(), out);
+  for (const char* collection : {kSimulations, kCampaigns}) {
+    add_words(std::string(collection) + ".filter", filter_fields(collection), out);
+  }
   for (const char* collection : {kLubricants, kGearSets, kSurfaces, kVehicles}) {
     add_words(std::string(collection) + ".filter", filter_fields(collection), out);
     const auto message = new_resource(collection);

@@ -24,7 +24,6 @@
 #include "server/simulation/result_key.h"
 #include "server/simulation/simulation_inputs.h"
 #include "server/storage/checksum.h"
-#include "server/storage/properties.h"
 #include "server/storage/resource_lookup.h"
 #include "server/support/sha256.h"
 
@@ -189,15 +188,6 @@ void set_result(Application& application, v1::SimulationView view, v1::Simulatio
   if (meant == v1::SIMULATION_VIEW_SUMMARY) summarise(*out.mutable_result());
 }
 
-/// Returns true for a property that can be compared by < and >.
-bool is_ordered(const std::string& key) {
-  const auto& fields = property_fields(kSimulations);
-  return std::any_of(fields.begin(), fields.end(), [&](const PropertyField& each) {
-    return each.key == key &&
-           (each.kind == PropertyKind::kTime || each.kind == PropertyKind::kNumber);
-  });
-}
-
 bool is_ascending(const std::string& order_by, Violations& violations) {
   if (order_by == "create_time" || order_by == "create_time asc") return true;
   if (!order_by.empty() && order_by != "create_time desc") {
@@ -299,32 +289,6 @@ Outcome<v1::Simulation> get_simulation(Application& application,
   return out;
 }
 
-std::vector<Restriction> simulation_restrictions(const std::string& filter,
-                                                 Violations& violations) {
-  std::vector<Restriction> out = parse_filter(filter, kSimulations, violations);
-  for (Restriction& each : out) {
-    const bool has_order = is_ordered(each.key);
-    const bool is_label = each.key.starts_with("labels.");
-    const bool is_text = each.key == "display_name";
-    const bool is_equality = each.comparison == Restriction::Comparison::kEqual ||
-                             each.comparison == Restriction::Comparison::kNotEqual;
-    if (each.key == "name") {
-      violations.push_back({"filter", "lists cannot be filtered by name; use GetSimulation"});
-    } else if (!has_order && !is_equality &&
-               !(is_label && each.comparison == Restriction::Comparison::kPresent) &&
-               !(is_text && each.comparison == Restriction::Comparison::kContains)) {
-      violations.push_back({"filter", each.key + ": allowed: = or !=, of labels also :*, of "
-                                                 "display_name also :"});
-    }
-    const std::string* word = std::get_if<std::string>(&each.value);
-    v1::Simulation::State state = v1::Simulation::STATE_UNSPECIFIED;
-    if (each.key == "state" && word != nullptr && v1::Simulation::State_Parse(*word, &state)) {
-      each.value = std::int64_t{state};
-    }
-  }
-  return out;
-}
-
 bool is_short_list(const v1::ListSimulationsRequest& request) {
   const bool has_results = request.view() != v1::SIMULATION_VIEW_UNSPECIFIED &&
                            request.view() != v1::SIMULATION_VIEW_BASIC;
@@ -340,7 +304,7 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
   query.project = call.project;
   query.limit = page_size(request.page_size(), kDefaultPageSize, violations);
   query.byte_limit = kMaximumPageBytes;
-  query.restrictions = simulation_restrictions(request.filter(), violations);
+  query.restrictions = parse_job_filter(request.filter(), kSimulations, violations);
   query.ascending = is_ascending(request.order_by(), violations);
   const ReadMask mask(request.read_mask(), *v1::Simulation::descriptor(), violations);
   const v1::SimulationView fallback =

@@ -24,8 +24,6 @@ bool is_short_list(const v1::ListSimulationsRequest& request);
 Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
                                                       const v1::ListSimulationsRequest& request,
                                                       const CallContext& call = {});
-/// Parses a filter into restrictions for the store, which compares states as numbers.
-std::vector<Restriction> simulation_restrictions(const std::string& filter, Violations& violations);
 
 /// Cancels a simulation. When it returns, the simulation is CANCELLED on disk, unless it had ended
 /// before.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "server/application/errors.h"
+#include "server/application/list_filter.h"
 #include "server/application/paging.h"
 #include "server/application/simulation_lookup.h"
 #include "server/application/simulations.h"
@@ -383,8 +384,9 @@ std::shared_ptr<void> take_place(const std::shared_ptr<std::atomic<int>>& open) 
 Outcome<Source> watch_filtered(Application& application, const v1::WatchSimulationsRequest& request,
                                const CallContext& call) {
   Violations violations;
-  SimulationQuery running{.project = call.project,
-                          .restrictions = simulation_restrictions(request.filter(), violations)};
+  SimulationQuery running{
+      .project = call.project,
+      .restrictions = parse_job_filter(request.filter(), kSimulations, violations)};
   for (const Restriction& each : running.restrictions) {
     if (each.key == "state" || each.key == "end_time" || each.key == "pinned") {
       violations.push_back(

@@ -2,8 +2,8 @@
 
 #include <string_view>
 
-#include "server/storage/campaign_conditions.h"
 #include "server/storage/life_cycle.h"
+#include "server/storage/list_conditions.h"
 #include "server/storage/resource_rows.h"
 
 namespace tribodyn::server {
@@ -188,7 +188,7 @@ std::optional<StoredCampaign> query_campaign_of_request(Connection& db, const st
 }
 
 Page<StoredCampaign> query_campaigns(Connection& db, const CampaignQuery& wanted) {
-  const Condition all = campaign_condition(db, wanted.project, wanted.restrictions);
+  const Condition all = list_condition(db, "campaigns", wanted.project, wanted.restrictions);
   const auto bind_all = [&all](auto& statement) {
     int at = 0;
     for (const PropertyValue& value : all.values) bind_value(statement, ++at, value);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "server/storage/list_conditions.h"
 #include "server/storage/resource_rows.h"
-#include "server/storage/simulation_queries.h"
 #include "server/storage/times.h"
 
 namespace tribodyn::server {
@@ -153,7 +153,7 @@ EventPage query_events(Connection& db, const EventQuery& query) {
     return page;
   }
   page.through = std::min(latest, query.after + kEventWindow);
-  const Condition condition = condition_of(db, query.project, query.restrictions);
+  const Condition condition = list_condition(db, "simulations", query.project, query.restrictions);
   SQLite::Statement events(db, std::string(kEventColumns) +
                                    "WHERE e.project = ? AND e.number > ? AND e.number <= ? AND "
                                    "(e.state = 0 OR EXISTS "

@@ -4,9 +4,11 @@
 
 #include <map>
 #include <memory>
+#include <utility>
 
 #include "proto/enum_names.h"
 #include "proto/field_behavior.h"
+#include "server/contract/resource_names.h"
 #include "server/storage/resource_types.h"
 #include "tribodyn/v1/labels.pb.h"
 
@@ -68,18 +70,18 @@ void add_labels(const Message& message, std::vector<Property>& out) {
 const std::vector<PropertyField>& property_fields(std::string_view collection) {
   static const std::map<std::string, std::vector<PropertyField>, std::less<>> kFields = [] {
     std::map<std::string, std::vector<PropertyField>, std::less<>> out;
-    for (const char* each : {"lubricants", "gearSets", "surfaces", "vehicles"}) {
+    for (const char* each : {kLubricants, kGearSets, kSurfaces, kVehicles}) {
       out[each] = fields_of(each);
     }
-    out["simulations"] = {
+    std::vector<PropertyField> columns = {
         {kCreateTime, PropertyKind::kTime},  {"display_name", PropertyKind::kText},
         {"end_time", PropertyKind::kTime},   {"gear_set", PropertyKind::kText},
         {"input_hash", PropertyKind::kText}, {"lubricant", PropertyKind::kText},
-        {"pinned", PropertyKind::kFlag},     {"state", PropertyKind::kEnum},
-        {"surface", PropertyKind::kText},    {"vehicle", PropertyKind::kText}};
-    out["campaigns"] = {{"display_name", PropertyKind::kText}, {"gear_set", PropertyKind::kText},
-                        {"lubricant", PropertyKind::kText},    {"state", PropertyKind::kEnum},
-                        {"surface", PropertyKind::kText},      {"vehicle", PropertyKind::kText}};
+        {"state", PropertyKind::kEnum},      {"surface", PropertyKind::kText},
+        {"vehicle", PropertyKind::kText}};
+    out[kCampaigns] = columns;
+    columns.push_back({"pinned", PropertyKind::kFlag});
+    out[kSimulations] = std::move(columns);
     return out;
   }();
   static const std::vector<PropertyField> kNone;

@@ -316,6 +316,7 @@ TEST_F(AppTest, SimulationsAreFoundByStateLubricantTimeAndLabel) {
   EXPECT_THAT(names("gear_set != gearSets/reference-axle-loaded-error@1").size(), 3U);
   EXPECT_THAT(names("end_time > 2020-01-01T00:00:00Z").size(), 3U);
   EXPECT_THAT(names("end_time > 2199-01-01T00:00:00Z"), ElementsAre());
+  EXPECT_THAT(names("end_time:*").size(), 3U);
   EXPECT_THAT(names("input_hash = " + bench_.get(curve).input_hash()), ElementsAre(curve));
   v1::Simulation titled = point_simulation();
   titled.set_display_name("Blend 7, hot");

@@ -499,6 +499,12 @@ TEST_F(CandidatesTest, NameAndLabelsChangeWhateverTheState) {
   EXPECT_THAT(names("state = SUCCEEDED AND lubricant = paper-fluid-1"),
               ElementsAre("campaigns/2", "campaigns/1"));
   EXPECT_THAT(names("state = paused"), IsEmpty());
+  EXPECT_THAT(names("create_time > 2020-01-01T00:00:00Z AND end_time > 2020-01-01T00:00:00Z"),
+              ElementsAre("campaigns/2", "campaigns/1"));
+  EXPECT_THAT(names("create_time > 2199-01-01T00:00:00Z"), IsEmpty());
+  EXPECT_THAT(names("end_time > 2199-01-01T00:00:00Z"), IsEmpty());
+  EXPECT_THAT(names("end_time:*"), ElementsAre("campaigns/2", "campaigns/1"));
+  EXPECT_THAT(names("input_hash = " + get("campaigns/1").input_hash()), ElementsAre("campaigns/1"));
   v1::UpdateCampaignRequest request;
   request.mutable_campaign()->set_name("campaigns/2");
   request.mutable_campaign()->set_display_name("Second screening");
@@ -525,6 +531,7 @@ TEST_F(CandidatesTest, NameAndLabelsChangeWhateverTheState) {
                         "labels, *"));
   EXPECT_THROW(names("labels.project > axle"), std::runtime_error);
   EXPECT_THROW(names("stat = x"), std::runtime_error);
+  EXPECT_THROW(names("input_hash > a"), std::runtime_error);
   EXPECT_THAT(check_database(bench_.database()), IsEmpty());
 }
 

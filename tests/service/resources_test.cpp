@@ -762,6 +762,7 @@ TEST_F(ResourcesTest, TheSchemaIsTheTableAndTheWordsThatAreAccepted) {
     EXPECT_THAT(each.words(), Not(IsEmpty())) << each.name();
   }
   EXPECT_THAT(words["history.columns"], testing::Contains("mesh_force_newtons"));
+  EXPECT_THAT(words["campaigns.filter"], testing::Contains("end_time"));
   EXPECT_THAT(words["Lubricant.BaseOilClass"], testing::Contains("BASE_OIL_CLASS_POLYALPHAOLEFIN"));
   for (const std::string& field : words["lubricants.filter"]) {
     if (field.find("KEY") != std::string::npos) continue;

@@ -70,8 +70,7 @@ Command campaigns_list_command() {
   command.flags.text(
       "--filter", "FILTER",
       "Only campaigns that satisfy it, e.g. 'state = RUNNING AND lubricant = my-oil'; "
-      "fields: display_name, state, lubricant, gear_set, surface, vehicle and "
-      "labels.KEY.",
+      "`tribodyn help filters` lists the fields.",
       [flags](const std::string& text) { flags->list.filter = text; });
   command.flags.texts("--label", "KEY[=VALUE]", "List only campaigns with this label; repeatable.",
                       [flags](const std::string& text) { flags->label_filters.push_back(text); });

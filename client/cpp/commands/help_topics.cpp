@@ -184,9 +184,9 @@ AND joins restrictions. Operators: = != < <= > >= and ":" (contains; `labels.key
 value). Put texts with blanks in double quotes. Numbers are in the unit of the field's name; kv40,
 kv100 (mm2/s), vi, sae_grade and density (kg/m3, at 15 C) are the columns of a list of lubricants.
 Names may have their collection, states and classes may be in upper or lower case.
-`tribodyn schema` lists the fields under "lubricants.filter" and so on. Jobs have state, lubricant
-(my-oil, or my-oil@2 for a revision), gear_set, surface, vehicle, display_name, pinned (true or
-false), create_time, end_time, input_hash and labels.
+`tribodyn schema` lists the fields under "lubricants.filter" and so on. Jobs and campaigns have
+state, lubricant (my-oil, or my-oil@2 for a revision), gear_set, surface, vehicle, display_name,
+create_time, end_time, input_hash and labels; jobs also have pinned (true or false).
 )"},
       {"configuration", "configuration file and environment",
        R"(Configuration

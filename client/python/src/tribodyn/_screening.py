@@ -156,8 +156,8 @@ class Screening(Session):
         self, limit: int | None = None, *, filter: str = ""
     ) -> list[AsyncCampaign]:
         """Returns campaigns, newest first; at most ``limit``. ``filter``: e.g. "labels.project = axle
-        AND state = RUNNING"; fields are labels.KEY, display_name, state, lubricant, gear_set,
-        surface and vehicle."""
+        AND create_time > 2026-01-31T00:00:00Z"; ``tribodyn help filters`` lists the
+        fields."""
         found: list[pb.Campaign] = []
         request = pb.ListCampaignsRequest(page_size=min(limit or 1000, 1000), filter=filter)
         while True:
