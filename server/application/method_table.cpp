@@ -1,6 +1,7 @@
 #include "server/application/method_table.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -95,84 +96,36 @@ Method stream(Scope scope, StreamOutcome<Response> (*use_case)(Application&, con
           }};
 }
 
+/// The rows of the methods that every kind of resource has.
+#define TRIBODYN_STANDARD_ROWS(Resource, field, collection, seed)                                 \
+  unary(Scope::kWrite, kWrite, write_resource<v1::Resource, v1::Create##Resource##Request>),      \
+      unary(Scope::kWrite, kHeavy,                                                                \
+            write_batch<v1::Resource, v1::BatchCreate##Resource##sResponse,                       \
+                        v1::BatchCreate##Resource##sRequest>),                                    \
+      unary(Scope::kRead, kRead, get_resource<v1::Resource, v1::Get##Resource##Request>),         \
+      unary(Scope::kRead, kSearch,                                                                \
+            list_resources<v1::Resource, v1::List##Resource##sResponse,                           \
+                           v1::List##Resource##sRequest>),                                        \
+      unary(Scope::kWrite, kWrite, write_resource<v1::Resource, v1::Update##Resource##Request>),  \
+      unary(Scope::kWrite, kHeavy,                                                                \
+            write_batch<v1::Resource, v1::BatchUpdate##Resource##sResponse,                       \
+                        v1::BatchUpdate##Resource##sRequest>),                                    \
+      unary(Scope::kRead, kSearch,                                                                \
+            list_revisions<v1::Resource, v1::List##Resource##RevisionsResponse,                   \
+                           v1::List##Resource##RevisionsRequest>),                                \
+      unary(Scope::kWrite, kWrite, delete_resource<v1::Resource, v1::Delete##Resource##Request>), \
+      unary(Scope::kWrite, kWrite,                                                                \
+            undelete_resource<v1::Resource, v1::Undelete##Resource##Request>),                    \
+      unary(Scope::kAdmin, kHeavy, purge_resource<v1::Resource, v1::Purge##Resource##Request>),
+
 std::vector<Method> rows() {
   using enum CallLane;
-  return {
-      unary(Scope::kWrite, kWrite, write_resource<v1::Lubricant, v1::CreateLubricantRequest>),
-      unary(Scope::kWrite, kHeavy,
-            write_batch<v1::Lubricant, v1::BatchCreateLubricantsResponse,
-                        v1::BatchCreateLubricantsRequest>),
+  std::vector<Method> out = {TRIBODYN_RESOURCE_KINDS(TRIBODYN_STANDARD_ROWS)};
+  const std::initializer_list<Method> others = {
       unary<v1::ImportLubricantRequest, v1::Lubricant>(Scope::kWrite, kHeavy, import_lubricant),
-      unary(Scope::kRead, kRead, get_resource<v1::Lubricant, v1::GetLubricantRequest>),
-      unary(Scope::kRead, kSearch,
-            list_resources<v1::Lubricant, v1::ListLubricantsResponse, v1::ListLubricantsRequest>),
-      unary(Scope::kWrite, kWrite, write_resource<v1::Lubricant, v1::UpdateLubricantRequest>),
-      unary(Scope::kWrite, kHeavy,
-            write_batch<v1::Lubricant, v1::BatchUpdateLubricantsResponse,
-                        v1::BatchUpdateLubricantsRequest>),
-      unary(Scope::kRead, kSearch,
-            list_revisions<v1::Lubricant, v1::ListLubricantRevisionsResponse,
-                           v1::ListLubricantRevisionsRequest>),
-      unary(Scope::kWrite, kWrite, delete_resource<v1::Lubricant, v1::DeleteLubricantRequest>),
-      unary(Scope::kWrite, kWrite, undelete_resource<v1::Lubricant, v1::UndeleteLubricantRequest>),
-      unary(Scope::kAdmin, kHeavy, purge_resource<v1::Lubricant, v1::PurgeLubricantRequest>),
-
-      unary(Scope::kWrite, kWrite, write_resource<v1::GearSet, v1::CreateGearSetRequest>),
-      unary(Scope::kWrite, kHeavy,
-            write_batch<v1::GearSet, v1::BatchCreateGearSetsResponse,
-                        v1::BatchCreateGearSetsRequest>),
       unary<v1::ImportGearSetRequest, v1::GearSet>(Scope::kWrite, kHeavy, import_gear_set),
-      unary(Scope::kRead, kRead, get_resource<v1::GearSet, v1::GetGearSetRequest>),
-      unary(Scope::kRead, kSearch,
-            list_resources<v1::GearSet, v1::ListGearSetsResponse, v1::ListGearSetsRequest>),
-      unary(Scope::kWrite, kWrite, write_resource<v1::GearSet, v1::UpdateGearSetRequest>),
-      unary(Scope::kWrite, kHeavy,
-            write_batch<v1::GearSet, v1::BatchUpdateGearSetsResponse,
-                        v1::BatchUpdateGearSetsRequest>),
-      unary(Scope::kRead, kSearch,
-            list_revisions<v1::GearSet, v1::ListGearSetRevisionsResponse,
-                           v1::ListGearSetRevisionsRequest>),
-      unary(Scope::kWrite, kWrite, delete_resource<v1::GearSet, v1::DeleteGearSetRequest>),
-      unary(Scope::kWrite, kWrite, undelete_resource<v1::GearSet, v1::UndeleteGearSetRequest>),
-      unary(Scope::kAdmin, kHeavy, purge_resource<v1::GearSet, v1::PurgeGearSetRequest>),
-
-      unary(Scope::kWrite, kWrite, write_resource<v1::Surface, v1::CreateSurfaceRequest>),
-      unary(Scope::kWrite, kHeavy,
-            write_batch<v1::Surface, v1::BatchCreateSurfacesResponse,
-                        v1::BatchCreateSurfacesRequest>),
       unary<v1::ImportSurfaceProfilesRequest, v1::Surface>(Scope::kWrite, kHeavy,
                                                            import_surface_profiles),
-      unary(Scope::kRead, kRead, get_resource<v1::Surface, v1::GetSurfaceRequest>),
-      unary(Scope::kRead, kSearch,
-            list_resources<v1::Surface, v1::ListSurfacesResponse, v1::ListSurfacesRequest>),
-      unary(Scope::kWrite, kWrite, write_resource<v1::Surface, v1::UpdateSurfaceRequest>),
-      unary(Scope::kWrite, kHeavy,
-            write_batch<v1::Surface, v1::BatchUpdateSurfacesResponse,
-                        v1::BatchUpdateSurfacesRequest>),
-      unary(Scope::kRead, kSearch,
-            list_revisions<v1::Surface, v1::ListSurfaceRevisionsResponse,
-                           v1::ListSurfaceRevisionsRequest>),
-      unary(Scope::kWrite, kWrite, delete_resource<v1::Surface, v1::DeleteSurfaceRequest>),
-      unary(Scope::kWrite, kWrite, undelete_resource<v1::Surface, v1::UndeleteSurfaceRequest>),
-      unary(Scope::kAdmin, kHeavy, purge_resource<v1::Surface, v1::PurgeSurfaceRequest>),
-
-      unary(Scope::kWrite, kWrite, write_resource<v1::Vehicle, v1::CreateVehicleRequest>),
-      unary(Scope::kWrite, kHeavy,
-            write_batch<v1::Vehicle, v1::BatchCreateVehiclesResponse,
-                        v1::BatchCreateVehiclesRequest>),
-      unary(Scope::kRead, kRead, get_resource<v1::Vehicle, v1::GetVehicleRequest>),
-      unary(Scope::kRead, kSearch,
-            list_resources<v1::Vehicle, v1::ListVehiclesResponse, v1::ListVehiclesRequest>),
-      unary(Scope::kWrite, kWrite, write_resource<v1::Vehicle, v1::UpdateVehicleRequest>),
-      unary(Scope::kWrite, kHeavy,
-            write_batch<v1::Vehicle, v1::BatchUpdateVehiclesResponse,
-                        v1::BatchUpdateVehiclesRequest>),
-      unary(Scope::kRead, kSearch,
-            list_revisions<v1::Vehicle, v1::ListVehicleRevisionsResponse,
-                           v1::ListVehicleRevisionsRequest>),
-      unary(Scope::kWrite, kWrite, delete_resource<v1::Vehicle, v1::DeleteVehicleRequest>),
-      unary(Scope::kWrite, kWrite, undelete_resource<v1::Vehicle, v1::UndeleteVehicleRequest>),
-      unary(Scope::kAdmin, kHeavy, purge_resource<v1::Vehicle, v1::PurgeVehicleRequest>),
 
       unary(Scope::kRead, kRead, get_schema),
       unary<v1::EvaluateContactRequest, v1::EvaluateContactResponse>(Scope::kRead, kSearch,
@@ -221,7 +174,10 @@ std::vector<Method> rows() {
       stream(Scope::kRead, watch_campaign),
       stream(Scope::kRead, read_campaign),
   };
+  out.insert(out.end(), others);
+  return out;
 }
+#undef TRIBODYN_STANDARD_ROWS
 
 }  // namespace
 

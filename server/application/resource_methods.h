@@ -15,9 +15,9 @@
 #include "server/application/page_token.h"
 #include "server/application/paging.h"
 #include "server/application/read_mask.h"
-#include "server/application/resource_kinds.h"
 #include "server/application/stored_messages.h"
 #include "server/contract/output_only.h"
+#include "server/contract/resource_kinds.h"
 #include "server/resources/lubricant_parameters.h"
 #include "tribodyn/v1/purge_report.pb.h"
 
@@ -55,17 +55,15 @@ inline google::rpc::Status unreadable(const std::string& name) {
 inline void add_characterisation(v1::Lubricant& lubricant) {
   *lubricant.mutable_characterisation() = characterisation(lubricant);
 }
-inline void add_characterisation(v1::GearSet&) {}
-inline void add_characterisation(v1::Surface&) {}
-inline void add_characterisation(v1::Vehicle&) {}
+template <class Resource>
+void add_characterisation(Resource&) {}
 
 /// What a lubricant shows in a list.
 inline void add_list_figures(v1::Lubricant& lubricant) {
   *lubricant.mutable_characterisation() = brief_characterisation(lubricant);
 }
-inline void add_list_figures(v1::GearSet&) {}
-inline void add_list_figures(v1::Surface&) {}
-inline void add_list_figures(v1::Vehicle&) {}
+template <class Resource>
+void add_list_figures(Resource&) {}
 
 /// Does not ask the store, so that what has been written is answered whatever the deadline.
 template <class Resource>

@@ -9,6 +9,7 @@
 #include "server/application/list_filter.h"
 #include "server/contract/constraints.h"
 #include "server/contract/contract_comments.h"
+#include "server/contract/resource_kinds.h"
 #include "server/mapping/history_columns.h"
 #include "server/resources/imports/import_gear_set.h"
 #include "server/resources/imports/import_lubricant.h"
@@ -55,7 +56,7 @@ void add_vocabularies(v1::Schema& out) {
   for (const char* collection : {kSimulations, kCampaigns}) {
     add_words(std::string(collection) + ".filter", filter_fields(collection), out);
   }
-  for (const char* collection : {kLubricants, kGearSets, kSurfaces, kVehicles}) {
+  for (const char* collection : kResourceCollections) {
     add_words(std::string(collection) + ".filter", filter_fields(collection), out);
     const auto message = new_resource(collection);
     const ParameterPaths paths = parameter_paths(*message->GetDescriptor());

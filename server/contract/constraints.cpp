@@ -2,8 +2,17 @@
 
 #include <fmt/format.h>
 
+#include "proto/resource_kinds.h"
+
 namespace tribodyn::server {
 namespace {
+
+/// The sizes of the batches of a kind of resource.
+#define TRIBODYN_BATCH_SIZES(Resource, field, collection, seed)                                \
+  {"BatchCreate" #Resource "sRequest", "requests", "", 1, kMaximumBatchSize, "work limit",     \
+   "requests of one transaction"},                                                             \
+      {"BatchUpdate" #Resource "sRequest", "requests", "", 1, kMaximumBatchSize, "work limit", \
+       "requests of one transaction"},
 
 constexpr Constraint kConstraints[] = {
     // message, field, unit, minimum, maximum, equation, reason, zero
@@ -300,23 +309,8 @@ constexpr Constraint kConstraints[] = {
     {"CampaignBudget", "processor_seconds", "s", 0, 1e9, "work limit", ""},
     {"CampaignBudget", "points", "", 0, 20'000'000, "work limit", ""},
 
-    {"BatchCreateLubricantsRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
-     "requests of one transaction"},
-    {"BatchUpdateLubricantsRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
-     "requests of one transaction"},
-    {"BatchCreateGearSetsRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
-     "requests of one transaction"},
-    {"BatchUpdateGearSetsRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
-     "requests of one transaction"},
-    {"BatchCreateSurfacesRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
-     "requests of one transaction"},
-    {"BatchUpdateSurfacesRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
-     "requests of one transaction"},
-    {"BatchCreateVehiclesRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
-     "requests of one transaction"},
-    {"BatchUpdateVehiclesRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
-     "requests of one transaction"},
-};
+    TRIBODYN_RESOURCE_KINDS(TRIBODYN_BATCH_SIZES)};
+#undef TRIBODYN_BATCH_SIZES
 
 /// A unit that clients often use instead of the contract's unit, and the usual range of the
 /// quantity. A number outside the allowed range that is usual in this unit was probably written in
@@ -375,9 +369,10 @@ std::string allowed_text(const Constraint& row) {
 std::span<const Constraint> constraints() { return kConstraints; }
 
 bool is_required(const Constraint& row) {
-  return row.message == "Lubricant" || row.message == "ImprovedYasutomi" ||
-         row.message == "GearSet" || row.message == "DrivelineDynamics" ||
-         row.message == "Surface" || row.message == "Vehicle";
+#define TRIBODYN_IS_OF(Resource, field, collection, seed) row.message == #Resource ||
+  return TRIBODYN_RESOURCE_KINDS(TRIBODYN_IS_OF) row.message == "ImprovedYasutomi" ||
+      row.message == "DrivelineDynamics";
+#undef TRIBODYN_IS_OF
 }
 
 const Constraint* find_constraint(std::string_view message, std::string_view field) {

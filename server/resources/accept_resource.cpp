@@ -13,6 +13,7 @@
 #include "server/contract/constraints.h"
 #include "server/contract/labels.h"
 #include "server/contract/output_only.h"
+#include "server/contract/resource_kinds.h"
 #include "server/resources/lubricant_parameters.h"
 #include "server/resources/provenance.h"
 
@@ -29,11 +30,6 @@ bool check_count(const Repeated& list, int maximum, const std::string& path,
       {path, fmt::format("{} entries; allowed: at most {}", list.size(), maximum)});
   return false;
 }
-
-const char* collection_of(const v1::Lubricant&) { return kLubricants; }
-const char* collection_of(const v1::GearSet&) { return kGearSets; }
-const char* collection_of(const v1::Surface&) { return kSurfaces; }
-const char* collection_of(const v1::Vehicle&) { return kVehicles; }
 
 /// Returns true if the stored resource `name`, from which `ancestor` is derived, itself descends
 /// from `ancestor`. Stops at a name whose chain is known, so that a batch follows each step of a
@@ -74,7 +70,7 @@ void check_descent(const Resource& stated, const ResourceLookup& lookup, const s
                    Violations& violations) {
   const std::string& name = stated.derived_from();
   if (name.empty()) return;
-  const std::string collection = collection_of(stated);
+  const std::string collection = Kind<Resource>::kCollection;
   const auto parsed = parse_revision_name(name, collection);
   if (parsed && parsed->name == stated.name()) {
     violations.push_back({path, fmt::format("{} is the resource itself", name)});
@@ -218,6 +214,17 @@ void check_provenance_of_computed(const v1::Lubricant& lubricant, const v1::Lubr
 
 }  // namespace
 
+template <class Resource>
+std::optional<Resource> accept(const Resource& stated, const std::type_identity_t<Resource>*,
+                               const ResourceLookup& lookup, const std::string& path,
+                               Violations& violations) {
+  const std::size_t before = violations.size();
+  Resource out = normalize(stated, lookup, path, Missing::kViolation, violations);
+  if (violations.size() > before) return std::nullopt;
+  return finalize(std::move(out));
+}
+
+template <>
 std::optional<v1::Lubricant> accept(const v1::Lubricant& stated, const v1::Lubricant* present,
                                     const ResourceLookup& lookup, const std::string& path,
                                     Violations& violations) {
@@ -257,12 +264,14 @@ std::optional<v1::GearSet> accept(const v1::GearSet& stated, const LocateSample&
   return finalize(std::move(out));
 }
 
+template <>
 std::optional<v1::GearSet> accept(const v1::GearSet& stated, const v1::GearSet*,
                                   const ResourceLookup& lookup, const std::string& path,
                                   Violations& violations) {
   return accept(stated, LocateSample(), lookup, path, violations);
 }
 
+template <>
 std::optional<v1::Surface> accept(const v1::Surface& stated, const v1::Surface*,
                                   const ResourceLookup& lookup, const std::string& path,
                                   Violations& violations) {
@@ -274,14 +283,12 @@ std::optional<v1::Surface> accept(const v1::Surface& stated, const v1::Surface*,
   return finalize(std::move(out));
 }
 
-std::optional<v1::Vehicle> accept(const v1::Vehicle& stated, const v1::Vehicle*,
-                                  const ResourceLookup& lookup, const std::string& path,
-                                  Violations& violations) {
-  const std::size_t before = violations.size();
-  v1::Vehicle out = normalize(stated, lookup, path, Missing::kViolation, violations);
-  if (violations.size() > before) return std::nullopt;
-  return finalize(std::move(out));
-}
+#define TRIBODYN_ACCEPT(Resource, field, collection, seed)                               \
+  template std::optional<v1::Resource> accept(const v1::Resource&, const v1::Resource*,  \
+                                              const ResourceLookup&, const std::string&, \
+                                              Violations&);
+TRIBODYN_RESOURCE_KINDS(TRIBODYN_ACCEPT)
+#undef TRIBODYN_ACCEPT
 
 void check_client_fields(const v1::Lubricant& stated, const ResourceLookup& lookup,
                          const std::string& path, Violations& violations) {

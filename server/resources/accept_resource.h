@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <type_traits>
 
 #include "server/contract/labels.h"
 #include "server/contract/resource_names.h"
@@ -9,8 +10,6 @@
 #include "server/resources/gear_set_checks.h"
 #include "tribodyn/v1/gear_sets.pb.h"
 #include "tribodyn/v1/lubricants.pb.h"
-#include "tribodyn/v1/surfaces.pb.h"
-#include "tribodyn/v1/vehicles.pb.h"
 
 namespace tribodyn::server {
 
@@ -19,21 +18,15 @@ namespace tribodyn::server {
 // sorted by key and with provenance for every parameter. `stated` has its name. Returns nullopt and
 // adds all violations if a check fails; their paths start with `path`.
 
-/// `present` is the revision before an update, or null for a new lubricant. Unset parameters are
-/// fitted or estimated (lubricant_parameters.h). Parameters marked as computed are computed again
+/// `present` is the revision before an update, or null for a new resource. For a kind without rules
+/// of its own, constraints.cpp and the descriptor say everything. Unset parameters of a lubricant
+/// are fitted or estimated (lubricant_parameters.h); those marked as computed are computed again
 /// for a new lubricant, and if an update changes measurements, base oil class or another parameter.
-std::optional<v1::Lubricant> accept(const v1::Lubricant& stated, const v1::Lubricant* present,
-                                    const ResourceLookup& lookup, const std::string& path,
-                                    Violations& violations);
-std::optional<v1::GearSet> accept(const v1::GearSet& stated, const v1::GearSet* present,
-                                  const ResourceLookup& lookup, const std::string& path,
-                                  Violations& violations);
-std::optional<v1::Surface> accept(const v1::Surface& stated, const v1::Surface* present,
-                                  const ResourceLookup& lookup, const std::string& path,
-                                  Violations& violations);
-std::optional<v1::Vehicle> accept(const v1::Vehicle& stated, const v1::Vehicle* present,
-                                  const ResourceLookup& lookup, const std::string& path,
-                                  Violations& violations);
+template <class Resource>
+std::optional<Resource> accept(const Resource& stated,
+                               const std::type_identity_t<Resource>* present,
+                               const ResourceLookup& lookup, const std::string& path,
+                               Violations& violations);
 
 /// Checks the fields beside a table that cannot be read, so that the client receives all violations
 /// at once.

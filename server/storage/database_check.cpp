@@ -1,10 +1,12 @@
 #include "server/storage/database_check.h"
 
 #include <SQLiteCpp/Statement.h>
+#include <fmt/format.h>
 
 #include <map>
 #include <optional>
 
+#include "server/contract/resource_kinds.h"
 #include "server/contract/resource_names.h"
 #include "server/storage/campaign_tiles.h"
 #include "server/storage/checksum.h"
@@ -54,6 +56,14 @@ void check_file(Connection& db, Problems& problems) {
 }
 
 void check_rows(Connection& db, Problems& problems) {
+  find_rows(db,
+            fmt::format("SELECT name || ': unknown kind of resource, or unknown project' "
+                        "FROM resources WHERE collection NOT IN (SELECT CASE p.name "
+                        "WHEN 'default' THEN '' ELSE 'projects/' || p.name || '/' END || "
+                        "kind.column1 FROM projects p, (VALUES ('{}')) kind)",
+                        fmt::join(kResourceCollections, "'), ('"))
+                .c_str(),
+            problems);
   for (const char* sql : {
            "SELECT r.name || ': revisions have gaps' FROM resources r JOIN revisions v "
            "ON v.resource = r.id GROUP BY r.id "
@@ -62,11 +72,6 @@ void check_rows(Connection& db, Problems& problems) {
            "LEFT JOIN revisions v ON v.id = r.present AND v.resource = r.id "
            "WHERE v.revision IS NOT "
            "(SELECT max(revision) FROM revisions WHERE resource = r.id)",
-           "SELECT name || ': unknown kind of resource, or unknown project' FROM resources "
-           "WHERE collection NOT IN (SELECT CASE p.name WHEN 'default' THEN '' "
-           "ELSE 'projects/' || p.name || '/' END || kind.column1 "
-           "FROM projects p, (VALUES ('lubricants'), ('gearSets'), ('surfaces'), ('vehicles')) "
-           "kind)",
            "SELECT (SELECT name FROM simulation_names n WHERE n.simulation = s.id) || "
            "': its project does not exist or has given no such number' FROM simulations s "
            "WHERE NOT EXISTS (SELECT 1 FROM projects p WHERE p.name = s.project AND "

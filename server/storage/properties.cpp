@@ -8,6 +8,7 @@
 
 #include "proto/enum_names.h"
 #include "proto/field_behavior.h"
+#include "server/contract/resource_kinds.h"
 #include "server/contract/resource_names.h"
 #include "server/storage/resource_types.h"
 #include "tribodyn/v1/labels.pb.h"
@@ -70,9 +71,7 @@ void add_labels(const Message& message, std::vector<Property>& out) {
 const std::vector<PropertyField>& property_fields(std::string_view collection) {
   static const std::map<std::string, std::vector<PropertyField>, std::less<>> kFields = [] {
     std::map<std::string, std::vector<PropertyField>, std::less<>> out;
-    for (const char* each : {kLubricants, kGearSets, kSurfaces, kVehicles}) {
-      out[each] = fields_of(each);
-    }
+    for (const char* each : kResourceCollections) out[each] = fields_of(each);
     std::vector<PropertyField> columns = {
         {kCreateTime, PropertyKind::kTime},  {"display_name", PropertyKind::kText},
         {"end_time", PropertyKind::kTime},   {"gear_set", PropertyKind::kText},

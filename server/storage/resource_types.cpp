@@ -1,12 +1,9 @@
 #include "server/storage/resource_types.h"
 
+#include "proto/resource_kinds.h"
 #include "server/contract/resource_names.h"
 #include "tribodyn/v1/campaigns.pb.h"
-#include "tribodyn/v1/gear_sets.pb.h"
-#include "tribodyn/v1/lubricants.pb.h"
 #include "tribodyn/v1/simulations.pb.h"
-#include "tribodyn/v1/surfaces.pb.h"
-#include "tribodyn/v1/vehicles.pb.h"
 
 namespace tribodyn::server {
 
@@ -23,12 +20,12 @@ std::string full_collection_of(std::string_view full_name) {
 }
 
 std::unique_ptr<Message> new_resource(std::string_view collection) {
-  if (collection == "lubricants") return std::make_unique<v1::Lubricant>();
-  if (collection == "gearSets") return std::make_unique<v1::GearSet>();
-  if (collection == "surfaces") return std::make_unique<v1::Surface>();
-  if (collection == "vehicles") return std::make_unique<v1::Vehicle>();
-  if (collection == "simulations") return std::make_unique<v1::Simulation>();
-  if (collection == "campaigns") return std::make_unique<v1::Campaign>();
+#define TRIBODYN_NEW(Resource, field, kind, seed) \
+  if (collection == #kind) return std::make_unique<v1::Resource>();
+  TRIBODYN_RESOURCE_KINDS(TRIBODYN_NEW)
+#undef TRIBODYN_NEW
+  if (collection == kSimulations) return std::make_unique<v1::Simulation>();
+  if (collection == kCampaigns) return std::make_unique<v1::Campaign>();
   return nullptr;
 }
 

@@ -5,11 +5,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "proto/resource_kinds.h"
 #include "server/storage/embedded_seeds.h"
-#include "tribodyn/v1/gear_sets.pb.h"
-#include "tribodyn/v1/lubricants.pb.h"
-#include "tribodyn/v1/surfaces.pb.h"
-#include "tribodyn/v1/vehicles.pb.h"
 
 namespace tribodyn::server {
 namespace {
@@ -26,10 +23,10 @@ NewResource parse(std::string_view file, std::string_view json) {
 }
 
 NewResource parse(std::string_view file, std::string_view json) {
-  if (file.starts_with("lubricant_")) return parse<v1::Lubricant>(file, json);
-  if (file.starts_with("gear_set_")) return parse<v1::GearSet>(file, json);
-  if (file.starts_with("surface_")) return parse<v1::Surface>(file, json);
-  if (file.starts_with("vehicle_")) return parse<v1::Vehicle>(file, json);
+#define TRIBODYN_SEED(Resource, field, collection, seed) \
+  if (file.starts_with(#field "_")) return parse<v1::Resource>(file, json);
+  TRIBODYN_RESOURCE_KINDS(TRIBODYN_SEED)
+#undef TRIBODYN_SEED
   throw std::logic_error("seed " + std::string(file) + " has an unknown kind");
 }
 

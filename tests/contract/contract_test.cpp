@@ -23,6 +23,7 @@
 #include "server/simulation/cycle_evaluation.h"
 #include "tests/contract/breaking_changes.h"
 #include "tests/contract/lint.h"
+#include "tests/service/contract_methods.h"
 #include "tribodyn/v1/limits.pb.h"
 #include "tribodyn/v1/simulations.pb.h"
 #include "tribodyn/v1/surfaces.pb.h"
@@ -114,10 +115,11 @@ TEST(Contract, StatesTheLimitsThatTheServerEnforces) {
   const auto items = [](const std::string& message, const std::string& name) {
     return server::maximum_elements(field(message, name)).value_or(0);
   };
-  for (const char* each : {"Lubricant", "GearSet", "Surface", "Vehicle"}) {
+  for (const auto* type : server::resource_types()) {
+    const std::string& each = type->name();
     EXPECT_EQ(items(each, "labels"), server::kMaximumLabels);
     EXPECT_EQ(items(each, "provenance"), server::kMaximumProvenances);
-    const std::string plural = std::string(each) + "sRequest";
+    const std::string plural = each + "sRequest";
     EXPECT_EQ(items("BatchCreate" + plural, "requests"), server::kMaximumBatchSize);
     EXPECT_EQ(items("BatchUpdate" + plural, "requests"), server::kMaximumBatchSize);
   }
@@ -160,10 +162,11 @@ TEST(Contract, StatesTheLongestTextsThatTheServerTakes) {
   for (const char* each : {"CreateSimulationRequest", "CreateCampaignRequest"}) {
     EXPECT_EQ(bytes(each, "request_id"), std::size_t{server::kMaximumRequestIdLength});
   }
-  for (const char* each : {"Lubricants", "GearSets", "Surfaces", "Vehicles", "Simulations"}) {
-    EXPECT_EQ(bytes("List" + std::string(each) + "Request", "filter"),
-              server::kMaximumFilterLength);
+  for (const auto* type : server::resource_types()) {
+    EXPECT_EQ(bytes("List" + type->name() + "sRequest", "filter"), server::kMaximumFilterLength);
   }
+  EXPECT_EQ(bytes("ListSimulationsRequest", "filter"), server::kMaximumFilterLength);
+  EXPECT_EQ(bytes("ListCampaignsRequest", "filter"), server::kMaximumFilterLength);
 }
 
 TEST(Contract, LeavesRoomForTheAnswerThatHoldsAGearSet) {

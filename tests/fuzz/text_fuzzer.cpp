@@ -22,6 +22,7 @@
 #include "server/application/list_filter.h"
 #include "server/application/page_token.h"
 #include "server/resources/imports/csv_table.h"
+#include "server/storage/properties.h"
 #include "server/storage/seeds.h"
 #include "tribodyn/v1/lubricants.pb.h"
 
@@ -41,20 +42,18 @@ void judge(const server::Violations& violations, std::size_t most) {
 
 void read_filter(std::string_view text) {
   const std::size_t end = std::min(text.find('\n'), text.size());
-  const std::string name(text.substr(0, end));
+  const std::string collection(text.substr(0, end));
   const std::string rest(text.substr(std::min(end + 1, text.size())));
-  for (const char* collection : {"lubricants", "gearSets", "surfaces", "vehicles", "simulations"}) {
-    if (name != collection) continue;
-    server::Violations violations;
-    const auto restrictions = server::parse_filter(rest, collection, violations);
-    judge(violations, server::kMaximumRestrictions + 1);
-    require(restrictions.size() <= server::kMaximumRestrictions);
-    require(!restrictions.empty() || !violations.empty() ||
-            rest.find_first_not_of(" \t\n\v\f\r") == std::string::npos);
-    violations.clear();
-    server::parse_order(rest, collection, violations);
-    judge(violations, 2);
-  }
+  if (server::property_fields(collection).empty()) return;
+  server::Violations violations;
+  const auto restrictions = server::parse_filter(rest, collection, violations);
+  judge(violations, server::kMaximumRestrictions + 1);
+  require(restrictions.size() <= server::kMaximumRestrictions);
+  require(!restrictions.empty() || !violations.empty() ||
+          rest.find_first_not_of(" \t\n\v\f\r") == std::string::npos);
+  violations.clear();
+  server::parse_order(rest, collection, violations);
+  judge(violations, 2);
 }
 
 void read_page_token(std::string_view text) {

@@ -9,6 +9,7 @@
 
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
+#include "proto/resource_kinds.h"
 #include "tests/service/contract_methods.h"
 #include "tests/service/grpc_fixture.h"
 #include "tests/service/raw_client.h"
@@ -141,11 +142,11 @@ TEST_P(EveryMethod, SuggestsTheNearestNameForAnUnknownOne) {
     const auto* descriptor = inner->GetDescriptor()->FindFieldByName(field);
     inner->GetReflection()->SetString(inner, descriptor, value);
   };
+#define TRIBODYN_SEED(Resource, field, collection, seed) \
+  {#Resource "Service", #collection "/" seed},
   static const std::map<std::string, std::string> kCollections = {
-      {"LubricantService", "lubricants/paper-fluid-1"},
-      {"GearSetService", "gearSets/reference-axle"},
-      {"SurfaceService", "surfaces/run-in"},
-      {"VehicleService", "vehicles/passenger-car"}};
+      TRIBODYN_RESOURCE_KINDS(TRIBODYN_SEED)};
+#undef TRIBODYN_SEED
   const auto known = kCollections.find(GetParam()->service()->name());
   if (known == kCollections.end()) {
     const bool is_campaign = GetParam()->service()->name() == "CampaignService";

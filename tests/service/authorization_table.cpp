@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "google/rpc/error_details.pb.h"
+#include "proto/resource_kinds.h"
 #include "server/storage/connections.h"
 #include "server/storage/seeds.h"
 
@@ -21,10 +22,12 @@ std::atomic<long> statement_count = 0;
 
 /// Sets every name of a request: parent, name and names, also of the resource that it holds.
 void set_names(Message& message, const std::string& project, const std::string& id) {
+#define TRIBODYN_COLLECTION(Resource, field, collection, seed) {#Resource, #collection},
   static const std::map<std::string, std::string> kCollections = {
-      {"Lubricant", "lubricants"}, {"GearSet", "gearSets"},       {"Surface", "surfaces"},
-      {"Vehicle", "vehicles"},     {"Simulation", "simulations"}, {"Campaign", "campaigns"},
+      TRIBODYN_RESOURCE_KINDS(TRIBODYN_COLLECTION){"Simulation", "simulations"},
+      {"Campaign", "campaigns"},
       {"Candidate", "campaigns"}};
+#undef TRIBODYN_COLLECTION
   std::string collection = "simulations";
   for (const auto& [kind, name] : kCollections) {
     if (message.GetDescriptor()->name().find(kind) != std::string::npos) collection = name;

@@ -25,6 +25,7 @@
 #include "server/simulation/rig_evaluation.h"
 #include "server/simulation/simulation_inputs.h"
 #include "server/simulation/viscosity_evaluation.h"
+#include "tests/service/contract_methods.h"
 #include "tests/service/support.h"
 #include "tribodyn/v1/schemas.pb.h"
 #include "tribodyn/v1/spectra.pb.h"
@@ -104,7 +105,7 @@ struct Subject {
   v1::ComparePointsRequest comparison;
   v1::ExplainPointsRequest explanation;
   v1::Campaign campaign;
-  std::unique_ptr<Message> batch, decision;
+  std::unique_ptr<Message> batch, decision, other;
   Message* message = nullptr;
   std::string path;
 
@@ -240,6 +241,9 @@ struct Subject {
     } else if (name == "LoadShareAtTorque.Slot") {
       use(gear_set.mutable_load_share_by_torque(0)->mutable_slots(0),
           "load_share_by_torque[0].slots[0].");
+    } else if (message == nullptr) {
+      other = new_message(name);
+      use(other.get(), "");
     }
   }
 
@@ -303,6 +307,10 @@ struct Subject {
     }
     if (batch) {
       check_size(*batch, "requests", violations);
+      return violations;
+    }
+    if (other) {
+      check_message(*other, "", violations, Missing::kAllowed);
       return violations;
     }
     check_gear_set(gear_set, "", violations);
@@ -442,18 +450,7 @@ void collect_numbers(const Descriptor& descriptor, std::set<std::string>& out) {
 
 TEST(Constraints, EveryNumberThatAClientCanSendHasARow) {
   std::set<std::string> sent;
-  ASSERT_NE(v1::Schema::descriptor(), nullptr);  // otherwise the linker omits its file
-  const auto* pool = google::protobuf::DescriptorPool::generated_pool();
-  for (const char* file :
-       {"simulations", "contacts", "lubricants", "gear_sets", "surfaces", "vehicles", "schemas"}) {
-    const auto* contract = pool->FindFileByName(std::string("tribodyn/v1/") + file + ".proto");
-    ASSERT_NE(contract, nullptr) << file;
-    for (int i = 0; i < contract->service_count(); ++i) {
-      for (int k = 0; k < contract->service(i)->method_count(); ++k) {
-        collect_numbers(*contract->service(i)->method(k)->input_type(), sent);
-      }
-    }
-  }
+  for (const auto* method : all_methods()) collect_numbers(*method->input_type(), sent);
   for (const std::string& name : sent) {
     const std::size_t dot = name.rfind('.');
     EXPECT_NE(find_constraint(name.substr(0, dot), name.substr(dot + 1)), nullptr) << name;
@@ -462,17 +459,16 @@ TEST(Constraints, EveryNumberThatAClientCanSendHasARow) {
 
 /// The work of a batch grows with its list of requests.
 TEST(Constraints, EveryBatchHasARowForItsSize) {
-  int batches = 0;
-  for (const auto* file : {v1::Lubricant::descriptor()->file(), v1::GearSet::descriptor()->file(),
-                           v1::Surface::descriptor()->file(), v1::Vehicle::descriptor()->file()}) {
-    for (int i = 0; i < file->message_type_count(); ++i) {
-      const Descriptor& message = *file->message_type(i);
+  std::size_t batches = 0;
+  for (const auto* type : resource_types()) {
+    for (int i = 0; i < type->file()->message_type_count(); ++i) {
+      const Descriptor& message = *type->file()->message_type(i);
       if (message.FindFieldByName("requests") == nullptr) continue;
       EXPECT_NE(find_constraint(message.name(), "requests"), nullptr) << message.name();
       ++batches;
     }
   }
-  EXPECT_EQ(batches, 8);
+  EXPECT_EQ(batches, 2 * resource_types().size());
 }
 
 TEST(Constraints, EveryRowNamesAFieldThatExists) {

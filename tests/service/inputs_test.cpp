@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/version.h"
+#include "google/api/resource.pb.h"
 #include "server/contract/canonical_text.h"
 #include "server/resources/accept_resource.h"
 #include "server/simulation/assumptions.h"
@@ -22,6 +23,7 @@
 #include "server/simulation/input_hash.h"
 #include "server/simulation/simulation_inputs.h"
 #include "server/support/sha256.h"
+#include "tests/service/contract_methods.h"
 #include "tests/service/support.h"
 #include "tribodyn/v1/labels.pb.h"
 
@@ -221,13 +223,28 @@ void find_unclassified(const google::protobuf::Descriptor& message,
   }
 }
 
+/// Returns true if a field of `message` names a resource of this type.
+bool is_named_by(const google::protobuf::Descriptor& message,
+                 const google::protobuf::Descriptor& type) {
+  const std::string& name = type.options().GetExtension(google::api::resource).type();
+  for (int i = 0; i < message.field_count(); ++i) {
+    const auto& options = message.field(i)->options();
+    if (options.GetExtension(google::api::resource_reference).type() == name) return true;
+  }
+  return false;
+}
+
 TEST(Hash, EveryFieldThatItReachesIsClassified) {
   std::vector<std::string> unclassified;
-  for (const auto* message :
-       {v1::Lubricant::descriptor(), v1::GearSet::descriptor(), v1::Surface::descriptor(),
-        v1::Vehicle::descriptor(), v1::Simulation::descriptor(), v1::CampaignRig::descriptor()}) {
-    find_unclassified(*message, unclassified);
+  find_unclassified(*v1::Simulation::descriptor(), unclassified);
+  find_unclassified(*v1::CampaignRig::descriptor(), unclassified);
+  int kinds = 0;
+  for (const auto* type : resource_types()) {
+    if (!is_named_by(*v1::Simulation::descriptor(), *type)) continue;
+    find_unclassified(*type, unclassified);
+    ++kinds;
   }
+  EXPECT_GE(kinds, 4);
   for (const std::string& each : unclassified) {
     ADD_FAILURE() << each << ": say in input_fields.cpp whether a result depends on it";
   }

@@ -18,6 +18,7 @@
 
 #include "google/protobuf/timestamp.pb.h"
 #include "google/rpc/code.pb.h"
+#include "proto/resource_kinds.h"
 #include "server/storage/seeds.h"
 #include "server/transport/grpc/grpc_server.h"
 #include "server/transport/http/http_server.h"
@@ -195,11 +196,10 @@ struct Kind {
 };
 
 const std::vector<Kind>& kinds() {
-  static const std::vector<Kind> kKinds = {
-      {"Lubricant", "Lubricants", "lubricants", "lubricant", "paper-fluid-1"},
-      {"GearSet", "GearSets", "gearSets", "gear_set", "reference-axle"},
-      {"Surface", "Surfaces", "surfaces", "surface", "run-in"},
-      {"Vehicle", "Vehicles", "vehicles", "vehicle", "passenger-car"}};
+#define TRIBODYN_KIND(Resource, field, collection, seed) \
+  {#Resource, #Resource "s", #collection, #field, seed},
+  static const std::vector<Kind> kKinds = {TRIBODYN_RESOURCE_KINDS(TRIBODYN_KIND)};
+#undef TRIBODYN_KIND
   return kKinds;
 }
 

@@ -209,7 +209,6 @@ void add_profile_flags(FlagList& flags, const char* name, TableFiles& tables) {
 }
 
 void add_table_flags(FlagList& flags, const ResourceKind& kind, TableFiles& tables) {
-  if (kind.word == "vehicles") return;
   flags.group("Tables (CSV; `tribodyn help files` describes their columns)");
   if (kind.word == "lubricants") {
     flags.text("--viscosity-table", "FILE.csv",
@@ -222,7 +221,7 @@ void add_table_flags(FlagList& flags, const ResourceKind& kind, TableFiles& tabl
     flags.text("--series", "FILE.csv",
                "Fourier series of contact radii, mesh stiffness and transmission error.",
                [&](const std::string& path) { tables.series = path; });
-  } else {
+  } else if (kind.word == "surfaces") {
     add_profile_flags(flags, "--profile", tables);
   }
 }

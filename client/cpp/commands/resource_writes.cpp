@@ -108,7 +108,7 @@ int run_update(const ResourceKind& kind, const WriteFlags& flags, const CommonOp
 }
 
 /// Returns the flags that the short help lists for a kind: figures of a data sheet or a drawing.
-const std::vector<std::string>& main_figures(const ResourceKind& kind) {
+std::vector<std::string> main_figures(const ResourceKind& kind) {
   static const std::map<std::string, std::vector<std::string>> kFlags = {
       {"lubricants",
        {"--kv40", "--kv100", "--density15", "--brookfield", "--kv100-sheared", "--base-oil-class",
@@ -119,18 +119,19 @@ const std::vector<std::string>& main_figures(const ResourceKind& kind) {
         "--asperity-friction-coefficient"}},
       {"vehicles", {"--mass", "--drag-coefficient", "--wheel-radius", "--frontal-area"}},
   };
-  return kFlags.at(kind.word);
+  const auto found = kFlags.find(kind.word);
+  return found == kFlags.end() ? std::vector<std::string>() : found->second;
 }
 
 /// Returns the flags that name tables of a kind.
-const std::vector<std::string>& main_tables(const ResourceKind& kind) {
+std::vector<std::string> main_tables(const ResourceKind& kind) {
   static const std::map<std::string, std::vector<std::string>> kFlags = {
       {"lubricants", {"--viscosity-table"}},
       {"gear-sets", {"--tooth-contact", "--series"}},
       {"surfaces", {"--profile", "--levelling"}},
-      {"vehicles", {}},
   };
-  return kFlags.at(kind.word);
+  const auto found = kFlags.find(kind.word);
+  return found == kFlags.end() ? std::vector<std::string>() : found->second;
 }
 
 void show_in_short_help(const std::vector<std::string>& flags, Command& command) {

@@ -5,8 +5,10 @@
 #include "client/cpp/commands/json_import.h"
 #include "client/cpp/commands/resource_writes.h"
 #include "client/cpp/resources/json_input.h"
+#include "client/cpp/resources/row_columns.h"
 #include "client/cpp/resources/row_table.h"
 #include "client/cpp/resources/table_files.h"
+#include "client/cpp/text/csv.h"
 #include "client/cpp/text/table_text.h"
 #include "client/cpp/text/text.h"
 
@@ -27,15 +29,18 @@ const ResourceKind* kind_of_table(const std::string& text) {
   return nullptr;
 }
 
-/// Returns the kind that has the columns of a table of rows.
+/// Returns the kind that has most columns of a table of rows.
 const ResourceKind& kind_of_rows(const std::string& text) {
-  const std::string header = text.substr(0, text.find('\n'));
-  const auto has = [&](const char* word) { return header.find(word) != std::string::npos; };
-  const char* kind = has("asperity")                ? "surfaces"
-                     : has("mass_") || has("wheel") ? "vehicles"
-                                                    : "lubricants";
-  return *std::find_if(resource_kinds().begin(), resource_kinds().end(),
-                       [&](const ResourceKind& each) { return each.word == kind; });
+  const std::vector<std::string> header = read_csv(text, 1).front().cells;
+  const auto count = [&](const ResourceKind& kind) {
+    return std::count_if(header.begin(), header.end(), [&](const std::string& cell) {
+      std::string wrong;
+      return find_column(kind, cell, wrong).has_value();
+    });
+  };
+  return *std::max_element(
+      resource_kinds().begin(), resource_kinds().end(),
+      [&](const ResourceKind& a, const ResourceKind& b) { return count(a) < count(b); });
 }
 
 /// The id for a file without a name.

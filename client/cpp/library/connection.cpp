@@ -111,10 +111,10 @@ Connection::Connection(std::string address, std::chrono::duration<double> timeou
   if (!access.token.empty()) services_->token = read_token(access.token);
   services_->channel = grpc::CreateCustomChannel(
       services_->address, channel_credentials(services_->address, access), arguments);
-  services_->lubricants = v1::LubricantService::NewStub(services_->channel);
-  services_->gear_sets = v1::GearSetService::NewStub(services_->channel);
-  services_->surfaces = v1::SurfaceService::NewStub(services_->channel);
-  services_->vehicles = v1::VehicleService::NewStub(services_->channel);
+#define TRIBODYN_NEW_STUB(Resource, field, collection, seed) \
+  services_->field##s = v1::Resource##Service::NewStub(services_->channel);
+  TRIBODYN_RESOURCE_KINDS(TRIBODYN_NEW_STUB)
+#undef TRIBODYN_NEW_STUB
   services_->simulations = v1::SimulationService::NewStub(services_->channel);
   services_->campaigns = v1::CampaignService::NewStub(services_->channel);
   services_->points = v1::PointService::NewStub(services_->channel);

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "client/cpp/library/services.h"
+#include "proto/resource_kinds.h"
 
 namespace tribodyn::client {
 namespace {
@@ -10,7 +11,7 @@ template <class Resource>
 struct Methods;
 
 // Every kind has the same methods under other names; the macro defines them.
-#define TRIBODYN_METHODS(Resource, field)                                                        \
+#define TRIBODYN_METHODS(Resource, field, collection, seed)                                      \
   template <>                                                                                    \
   struct Methods<v1::Resource> {                                                                 \
     using Stub = v1::Resource##Service::Stub;                                                    \
@@ -47,11 +48,8 @@ struct Methods;
       return response.field##s();                                                                \
     }                                                                                            \
     static void set_id(Create& request, const std::string& id) { request.set_##field##_id(id); } \
-  }
-TRIBODYN_METHODS(Lubricant, lubricant);
-TRIBODYN_METHODS(GearSet, gear_set);
-TRIBODYN_METHODS(Surface, surface);
-TRIBODYN_METHODS(Vehicle, vehicle);
+  };
+TRIBODYN_RESOURCE_KINDS(TRIBODYN_METHODS)
 #undef TRIBODYN_METHODS
 
 template <class Request>
@@ -196,7 +194,7 @@ v1::PurgeReport Connection::purge(const std::string& name, const PurgeOptions& o
   return services_->call(Methods<Resource>::stub(*services_), Methods<Resource>::kPurge, request);
 }
 
-#define TRIBODYN_INSTANTIATE(Resource)                                                        \
+#define TRIBODYN_INSTANTIATE(Resource, field, collection, seed)                               \
   template v1::Resource Connection::create(const v1::Resource&, const std::string&, bool);    \
   template v1::Resource Connection::get(const std::string&);                                  \
   template Listing<v1::Resource> Connection::list(const ListOptions&);                        \
@@ -208,11 +206,8 @@ v1::PurgeReport Connection::purge(const std::string& name, const PurgeOptions& o
   template Listing<v1::Resource> Connection::revisions(const std::string&, int);              \
   template v1::Resource Connection::remove(const std::string&, const std::string&);           \
   template v1::Resource Connection::undelete(const std::string&, const std::string&);         \
-  template v1::PurgeReport Connection::purge<v1::Resource>(const std::string&, const PurgeOptions&)
-TRIBODYN_INSTANTIATE(Lubricant);
-TRIBODYN_INSTANTIATE(GearSet);
-TRIBODYN_INSTANTIATE(Surface);
-TRIBODYN_INSTANTIATE(Vehicle);
+  template v1::PurgeReport Connection::purge<v1::Resource>(const std::string&, const PurgeOptions&);
+TRIBODYN_RESOURCE_KINDS(TRIBODYN_INSTANTIATE)
 #undef TRIBODYN_INSTANTIATE
 
 v1::Lubricant Connection::import_lubricant(const v1::ImportLubricantRequest& request) {

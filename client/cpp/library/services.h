@@ -12,6 +12,7 @@
 #include "client/cpp/library/project_names.h"
 #include "client/cpp/library/retry.h"
 #include "client/cpp/library/status.h"
+#include "proto/resource_kinds.h"
 #include "tribodyn/client/connection.h"
 #include "tribodyn/v1/campaigns.grpc.pb.h"
 #include "tribodyn/v1/contacts.grpc.pb.h"
@@ -42,10 +43,10 @@ struct Connection::Services {
   std::string project;
   std::string token;  ///< empty: none
   std::shared_ptr<grpc::Channel> channel;
-  std::unique_ptr<v1::LubricantService::Stub> lubricants;
-  std::unique_ptr<v1::GearSetService::Stub> gear_sets;
-  std::unique_ptr<v1::SurfaceService::Stub> surfaces;
-  std::unique_ptr<v1::VehicleService::Stub> vehicles;
+#define TRIBODYN_STUB(Resource, field, collection, seed) \
+  std::unique_ptr<v1::Resource##Service::Stub> field##s;
+  TRIBODYN_RESOURCE_KINDS(TRIBODYN_STUB)
+#undef TRIBODYN_STUB
   std::unique_ptr<v1::SimulationService::Stub> simulations;
   std::unique_ptr<v1::CampaignService::Stub> campaigns;
   std::unique_ptr<v1::ContactService::Stub> contacts;

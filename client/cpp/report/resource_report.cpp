@@ -296,7 +296,7 @@ struct ListColumn {
 
 constexpr char kComputed[] = "characterisation";
 
-const std::vector<ListColumn>& list_columns(const ResourceKind& kind) {
+std::vector<ListColumn> list_columns(const ResourceKind& kind) {
   static const std::map<std::string, std::vector<ListColumn>> kColumns = {
       {"lubricants",
        {{"KV40", kComputed, "kinematic_viscosity_40_celsius_square_millimetres_per_second"},
@@ -315,7 +315,8 @@ const std::vector<ListColumn>& list_columns(const ResourceKind& kind) {
         {"drag", nullptr, "drag_coefficient"},
         {"wheel radius", nullptr, "wheel_radius_metres"}}},
   };
-  return kColumns.at(kind.word);
+  const auto found = kColumns.find(kind.word);
+  return found == kColumns.end() ? std::vector<ListColumn>() : found->second;
 }
 
 /// Returns the cell of a column; "-" if the value is not set.

@@ -1,10 +1,12 @@
 #include "client/cpp/resources/kind.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
 
 #include "client/cpp/text/text.h"
+#include "proto/resource_kinds.h"
 
 namespace tribodyn::client {
 namespace {
@@ -78,15 +80,18 @@ class TypedCalls final : public ResourceCalls {
   }
 };
 
+/// Makes the names of a kind from the field that holds it in requests, e.g. "gear_set".
 template <class Resource>
-ResourceKind make_kind(const char* word, const char* singular, const char* plural,
-                       const char* collection, const char* list_field, const char* example) {
+ResourceKind make_kind(const std::string& field, const char* collection, const char* seed) {
+  std::string word = field + "s", singular = field;
+  std::replace(word.begin(), word.end(), '_', '-');
+  std::replace(singular.begin(), singular.end(), '_', ' ');
   return {word,
           singular,
-          plural,
+          singular + "s",
           collection,
-          list_field,
-          example,
+          field + "s",
+          seed,
           &Resource::default_instance(),
           std::make_shared<TypedCalls<Resource>>()};
 }
@@ -94,18 +99,11 @@ ResourceKind make_kind(const char* word, const char* singular, const char* plura
 /// Returns the visitor's result for the resource in its own type.
 template <class Answer, class Resource, class Visitor>
 Answer& visit(Resource& resource, const Visitor& visitor) {
-  const auto try_type = [&](auto* as) -> Answer* {
-    return as == nullptr ? nullptr : &visitor(*as);
-  };
-  constexpr bool kConst = std::is_const_v<Resource>;
-  using Lubricant = std::conditional_t<kConst, const v1::Lubricant, v1::Lubricant>;
-  using GearSet = std::conditional_t<kConst, const v1::GearSet, v1::GearSet>;
-  using Surface = std::conditional_t<kConst, const v1::Surface, v1::Surface>;
-  using Vehicle = std::conditional_t<kConst, const v1::Vehicle, v1::Vehicle>;
-  if (Answer* answer = try_type(dynamic_cast<Lubricant*>(&resource))) return *answer;
-  if (Answer* answer = try_type(dynamic_cast<GearSet*>(&resource))) return *answer;
-  if (Answer* answer = try_type(dynamic_cast<Surface*>(&resource))) return *answer;
-  if (Answer* answer = try_type(dynamic_cast<Vehicle*>(&resource))) return *answer;
+#define TRIBODYN_VISIT(Type, field, collection, seed)                                   \
+  using Type = std::conditional_t<std::is_const_v<Resource>, const v1::Type, v1::Type>; \
+  if (auto* as = dynamic_cast<Type*>(&resource)) return visitor(*as);
+  TRIBODYN_RESOURCE_KINDS(TRIBODYN_VISIT)
+#undef TRIBODYN_VISIT
   throw std::logic_error(resource.GetTypeName() + " is not a resource");
 }
 
@@ -131,15 +129,10 @@ std::string ResourceKind::name_of(const std::string& id_or_name) const {
 }
 
 const std::vector<ResourceKind>& resource_kinds() {
-  static const std::vector<ResourceKind> kKinds = {
-      make_kind<v1::Lubricant>("lubricants", "lubricant", "lubricants", "lubricants", "lubricants",
-                               "paper-fluid-1"),
-      make_kind<v1::GearSet>("gear-sets", "gear set", "gear sets", "gearSets", "gear_sets",
-                             "reference-axle"),
-      make_kind<v1::Surface>("surfaces", "surface", "surfaces", "surfaces", "surfaces", "run-in"),
-      make_kind<v1::Vehicle>("vehicles", "vehicle", "vehicles", "vehicles", "vehicles",
-                             "passenger-car"),
-  };
+#define TRIBODYN_MAKE_KIND(Resource, field, collection, seed) \
+  make_kind<v1::Resource>(#field, #collection, seed),
+  static const std::vector<ResourceKind> kKinds = {TRIBODYN_RESOURCE_KINDS(TRIBODYN_MAKE_KIND)};
+#undef TRIBODYN_MAKE_KIND
   return kKinds;
 }
 

@@ -52,7 +52,7 @@ class ResourceCalls {
                                 const PurgeOptions& options) const = 0;
 };
 
-/// One of the four kinds of resource, with its names.
+/// One of the kinds of proto/resource_kinds.h, with its names.
 struct ResourceKind {
   std::string word;        ///< on the command line: "gear-sets"
   std::string singular;    ///< "gear set"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from typing import Any, Generic, List, Mapping, Type, TypeVar
 
 from google.protobuf.message import Message
@@ -13,18 +14,11 @@ from tribodyn._rows import fill, find_column, unknown
 from tribodyn._arguments import full_name
 from tribodyn._transport import Transport
 from tribodyn.errors import TribodynError, Violation, invalid_fields
-from tribodyn.v1 import gear_sets_pb2, lubricants_pb2, surfaces_pb2, vehicles_pb2
 
 R = TypeVar("R", bound=Message)
 
 _LARGEST_PAGE = 1000
 _LARGEST_BATCH = 20_000
-_MODULES = {
-    "Lubricant": lubricants_pb2,
-    "GearSet": gear_sets_pb2,
-    "Surface": surfaces_pb2,
-    "Vehicle": vehicles_pb2,
-}
 # What the server sets, and what a copy does not take over.
 _OUTPUT_ONLY = (
     "name",
@@ -162,7 +156,7 @@ class AsyncResources(Generic[R]):
         return paths
 
     def _request(self, message: str, /, **fields: Any) -> Any:
-        return getattr(_MODULES[self._word], message.format(self._word))(**fields)
+        return getattr(sys.modules[self._kind.__module__], message.format(self._word))(**fields)
 
     async def _call(self, method: str, request: Any) -> Any:
         return await self._transport.call(

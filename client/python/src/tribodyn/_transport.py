@@ -9,55 +9,11 @@ import uuid
 from typing import Any, AsyncIterator, Iterator
 
 import grpc
+from google.protobuf.descriptor import Descriptor
 from google.protobuf.message import Message
 
 from tribodyn.errors import details_of, reason_of, retry_delay_of, service_error
 from tribodyn.settings import DEFAULT_PROJECT, Settings
-from tribodyn.v1 import (
-    campaigns_pb2,
-    contacts_pb2,
-    cycles_pb2,
-    gear_sets_pb2,
-    lubricants_pb2,
-    points_pb2,
-    profiles_pb2,
-    rigs_pb2,
-    schemas_pb2,
-    simulations_pb2,
-    spectra_pb2,
-    surfaces_pb2,
-    vehicles_pb2,
-    viscosities_pb2,
-)
-
-_FILES = (
-    campaigns_pb2,
-    contacts_pb2,
-    cycles_pb2,
-    gear_sets_pb2,
-    lubricants_pb2,
-    points_pb2,
-    profiles_pb2,
-    rigs_pb2,
-    schemas_pb2,
-    simulations_pb2,
-    spectra_pb2,
-    surfaces_pb2,
-    vehicles_pb2,
-    viscosities_pb2,
-)
-_SERVICES = {
-    name: service for file in _FILES for name, service in file.DESCRIPTOR.services_by_name.items()
-}
-_RESOURCES = {
-    "Lubricant",
-    "GearSet",
-    "Surface",
-    "Vehicle",
-    "Simulation",
-    "SimulationEvent",
-    "Campaign",
-}
 
 _OPTIONS = (
     # With BDP probes, gRPC would buffer megabytes of a watch stream that is not read.
@@ -127,7 +83,7 @@ class Transport:
         loop = asyncio.get_running_loop()
         deadline = loop.time() + self.settings.timeout_seconds
         backoff = Backoff()
-        function = self._function(service, method)
+        function = self._function(service, method, request)
         waited_for_connection = False
         while True:
             try:
@@ -163,7 +119,8 @@ class Transport:
     ) -> AsyncIterator[Any]:
         """Yields the messages of a stream. Raises AioRpcError when it breaks."""
         self._add_project(request)
-        call = self._function(service, method)(request, timeout=timeout, metadata=self._metadata)
+        function = self._function(service, method, request)
+        call = function(request, timeout=timeout, metadata=self._metadata)
         try:
             async for message in call:
                 self._was_connected = True
@@ -172,10 +129,10 @@ class Transport:
         finally:
             call.cancel()
 
-    def _function(self, service: str, method: str) -> Any:
+    def _function(self, service: str, method: str, request: Message) -> Any:
         if self._channel is None:
             self._channel = self._connect()
-        described = _SERVICES[service].methods_by_name[method]
+        described = request.DESCRIPTOR.file.services_by_name[service].methods_by_name[method]
         make = (
             self._channel.unary_stream if described.server_streaming else self._channel.unary_unary
         )
@@ -248,11 +205,16 @@ def _never_connected(error: grpc.aio.AioRpcError) -> bool:
     )
 
 
+def _is_resource(kind: Descriptor) -> bool:
+    """Whether messages have the name of a resource: those of a service, and events of jobs."""
+    return kind.name == "SimulationEvent" or kind.name + "Service" in kind.file.services_by_name
+
+
 def _named(message: Message) -> Iterator[Message]:
     """Yields the message and the resources that are fields of it, or elements of one."""
     yield message
     for field, value in message.ListFields():
-        if field.message_type is not None and field.message_type.name in _RESOURCES:
+        if field.message_type is not None and _is_resource(field.message_type):
             yield from value if field.label == field.LABEL_REPEATED else [value]
 
 
