@@ -1,17 +1,26 @@
 #include "proto/field_behavior.h"
 
+#include <algorithm>
+
 #include "google/api/field_behavior.pb.h"
 
 namespace tribodyn {
 
+namespace {
+
+bool has(const google::protobuf::FieldDescriptor& field, google::api::FieldBehavior behavior) {
+  const auto& all = field.options().GetRepeatedExtension(google::api::field_behavior);
+  return std::find(all.begin(), all.end(), behavior) != all.end();
+}
+
+}  // namespace
+
 bool is_output_only(const google::protobuf::FieldDescriptor& field) {
-  const auto& options = field.options();
-  for (int i = 0; i < options.ExtensionSize(google::api::field_behavior); ++i) {
-    if (options.GetExtension(google::api::field_behavior, i) == google::api::OUTPUT_ONLY) {
-      return true;
-    }
-  }
-  return false;
+  return has(field, google::api::OUTPUT_ONLY);
+}
+
+bool is_documentary(const google::protobuf::FieldDescriptor& field) {
+  return has(field, google::api::OPTIONAL);
 }
 
 }  // namespace tribodyn

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "proto/field_behavior.h"
 #include "proto/resource_kinds.h"
 
 namespace tribodyn::server {
@@ -37,6 +38,8 @@ constexpr Constraint kConstraints[] = {
      ""},
     {"Lubricant", "density_slope_kilograms_per_cubic_metre_kelvin", "kg/(m3 K)", -100, 100, "eq 26",
      ""},
+    {"Lubricant", "flash_point_celsius", "C", 0, 600, "ASTM D92", ""},
+    {"Lubricant", "pour_point_celsius", "C", -120, 100, "ASTM D97", ""},
     {"ImprovedYasutomi", "glass_viscosity_pascal_seconds", "Pa s", 1e9, 1e16,
      "improved Yasutomi, eta_g", ""},
     {"ImprovedYasutomi", "glass_temperature_rise_kelvin", "K", 0, 2000, "improved Yasutomi, A_1",
@@ -370,9 +373,14 @@ std::span<const Constraint> constraints() { return kConstraints; }
 
 bool is_required(const Constraint& row) {
 #define TRIBODYN_IS_OF(Resource, field, collection, seed) row.message == #Resource ||
-  return TRIBODYN_RESOURCE_KINDS(TRIBODYN_IS_OF) row.message == "ImprovedYasutomi" ||
+  const bool has_parameters =
+      TRIBODYN_RESOURCE_KINDS(TRIBODYN_IS_OF) row.message == "ImprovedYasutomi" ||
       row.message == "DrivelineDynamics";
 #undef TRIBODYN_IS_OF
+  if (!has_parameters) return false;
+  return !is_documentary(*google::protobuf::DescriptorPool::generated_pool()
+                              ->FindMessageTypeByName("tribodyn.v1." + std::string(row.message))
+                              ->FindFieldByName(std::string(row.field)));
 }
 
 const Constraint* find_constraint(std::string_view message, std::string_view field) {

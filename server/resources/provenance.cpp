@@ -32,7 +32,7 @@ bool has_tables(const Descriptor& resource) {
 }
 
 bool is_parameter(const FieldDescriptor& field) {
-  return !field.is_repeated() && !is_output_only(field) &&
+  return !field.is_repeated() && !is_output_only(field) && !is_documentary(field) &&
          find_constraint(field.containing_type()->name(), field.name()) != nullptr;
 }
 

@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "server/contract/constraints.h"
-#include "server/contract/output_only.h"
 #include "server/mapping/from_core.h"
 #include "server/mapping/to_core.h"
 #include "server/resources/imports/import_surface.h"
 #include "server/resources/lubricant_parameters.h"
 #include "server/resources/provenance.h"
 #include "server/simulation/fluid_grounds.h"
+#include "server/simulation/input_fields.h"
 #include "server/simulation/solver_defaults.h"
 #include "server/support/lru_cache.h"
 
@@ -42,7 +42,7 @@ void add(Assumptions& out, const std::string& resource, const Provenances& all,
       entry == nullptr ? "" : entry->source());
 }
 
-/// Adds every number of a message that is not nested.
+/// Adds every number of a message that the model uses and that is not nested.
 void add_numbers(Assumptions& out, const std::string& resource, const Provenances& all,
                  const Message& message, const std::string& prefix) {
   const auto& descriptor = *message.GetDescriptor();
@@ -50,7 +50,7 @@ void add_numbers(Assumptions& out, const std::string& resource, const Provenance
   for (int i = 0; i < descriptor.field_count(); ++i) {
     const FieldDescriptor& field = *descriptor.field(i);
     const Constraint* row = find_constraint(descriptor.name(), field.name());
-    if (field.is_repeated() || is_output_only(field) || row == nullptr) continue;
+    if (field.is_repeated() || row == nullptr || input_role(field) != InputRole::kInput) continue;
     const double value = field.cpp_type() == FieldDescriptor::CPPTYPE_INT32
                              ? reflection.GetInt32(message, &field)
                              : reflection.GetDouble(message, &field);

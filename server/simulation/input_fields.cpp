@@ -32,7 +32,7 @@ constexpr InputFields kInputFields[] = {
      "density_at_zero_kelvin_kilograms_per_cubic_metre "
      "density_slope_kilograms_per_cubic_metre_kelvin improved_yasutomi",
      "name display_name description provenance base_oil_class measurements condition "
-     "derived_from external_sample_id lims_id labels"},
+     "derived_from external_sample_id lims_id labels flash_point_celsius pour_point_celsius"},
     {"ImprovedYasutomi",
      "glass_viscosity_pascal_seconds glass_temperature_rise_kelvin "
      "glass_pressure_factor_per_pascal expansivity_pressure_factor_per_pascal "

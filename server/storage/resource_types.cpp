@@ -1,5 +1,6 @@
 #include "server/storage/resource_types.h"
 
+#include "proto/field_behavior.h"
 #include "proto/resource_kinds.h"
 #include "server/contract/resource_names.h"
 #include "tribodyn/v1/campaigns.pb.h"
@@ -39,7 +40,7 @@ void set_missing_numbers(Message& message) {
     if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
       if (set) set_missing_numbers(*reflection.MutableMessage(&message, field));
     } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE && !set &&
-               field->real_containing_oneof() == nullptr) {
+               field->real_containing_oneof() == nullptr && !is_documentary(*field)) {
       reflection.SetDouble(&message, field, 0);
     }
   }

@@ -207,15 +207,18 @@ expect 0 jobs list --output csv
 
 echo "--- one fluid per row"
 cat >rows.csv <<'END'
-name;kinematic_viscosity_40_celsius_square_millimetres_per_second;kinematic_viscosity_100_celsius_square_millimetres_per_second;base_oil_class;condition;derived_from;labels.project;display_name
-row-used;70;8.6;pao;used;row-fresh;axle;
-row-fresh;73.3;8.86;pao;fresh;;axle;"An ""oil""; fresh"
+name;kinematic_viscosity_40_celsius_square_millimetres_per_second;kinematic_viscosity_100_celsius_square_millimetres_per_second;base_oil_class;condition;derived_from;labels.project;display_name;flash_point_celsius
+row-used;70;8.6;pao;used;row-fresh;axle;;
+row-fresh;73.3;8.86;pao;fresh;;axle;"An ""oil""; fresh";212
 END
 expect 0 validate rows.csv
 expect 1 lubricants get row-used
 expect 0 lubricants import rows.csv
 expect 0 lubricants get row-used
 out_has 'derived from +lubricants/row-fresh'
+out_lacks 'flash point'
+expect 0 lubricants get row-fresh
+out_has 'flash point +212 C'
 expect 0 lubricants export row-fresh row-used --output csv --file rows-2.csv
 err_is_empty
 expect 0 lubricants import rows-2.csv --replace
@@ -468,6 +471,25 @@ out_lines 1101
 expect 0 lubricants import many.json --replace --validate-only
 expect 1 lubricants import many.json --replace --validate-only --output json
 err_has 'one answer has no room for 1100 lubricants in full: leave --output out'
+
+echo "--- numbers that the model does not use"
+expect 0 lubricants create data-sheet --like paper-fluid-1 --flash-point 212C --pour-point 0
+out_has 'flash point +212 C'
+out_has 'pour point +0 C'
+expect 0 lubricants export data-sheet --output csv --file data-sheet.csv
+grep -q 'flash_point_celsius,pour_point_celsius' data-sheet.csv || fail "the table lacks the flash point"
+! grep -q 'flash_point_celsius[.]source' data-sheet.csv || fail "the flash point has a source"
+expect 0 lubricants import data-sheet.csv --replace
+expect 0 lubricants revisions data-sheet --output csv
+out_lines 2
+expect 0 lubricants update data-sheet --unset flash-point
+out_lacks 'flash point'
+expect 2 lubricants update data-sheet --provenance pour-point=measured
+err_has "'pour-point' is not a parameter of a lubricant"
+expect 1 lubricants update data-sheet --pour-point -200
+err_has '--pour-point = -200 C; allowed: -120 to 100 C .ASTM D97.'
+expect 0 lubricants list --filter 'pour_point_celsius <= 0' --output csv
+out_lines 2
 cd "$here" || exit 1
 
 finish

@@ -450,7 +450,13 @@ void collect_numbers(const Descriptor& descriptor, std::set<std::string>& out) {
 
 TEST(Constraints, EveryNumberThatAClientCanSendHasARow) {
   std::set<std::string> sent;
-  for (const auto* method : all_methods()) collect_numbers(*method->input_type(), sent);
+  std::set<const google::protobuf::FileDescriptor*> files = {
+      v1::Simulation::descriptor()->file(), v1::EvaluateContactRequest::descriptor()->file(),
+      v1::Schema::descriptor()->file()};
+  for (const auto* type : resource_types()) files.insert(type->file());
+  for (const auto* method : all_methods()) {
+    if (files.contains(method->file())) collect_numbers(*method->input_type(), sent);
+  }
   for (const std::string& name : sent) {
     const std::size_t dot = name.rfind('.');
     EXPECT_NE(find_constraint(name.substr(0, dot), name.substr(dot + 1)), nullptr) << name;

@@ -16,13 +16,13 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-/// Sets every number of a message to a different value. Returns their number.
+/// Sets every number of a message that the model uses to a different value. Returns their number.
 int fill(Message* message, int next = 1) {
   const auto& descriptor = *message->GetDescriptor();
   const auto& reflection = *message->GetReflection();
   for (int i = 0; i < descriptor.field_count(); ++i) {
     const FieldDescriptor* field = descriptor.field(i);
-    if (field->is_repeated() || is_output_only(*field)) continue;
+    if (field->is_repeated() || is_output_only(*field) || is_documentary(*field)) continue;
     if (field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
       reflection.SetDouble(message, field, next++);
     } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_INT32) {

@@ -14,6 +14,7 @@
 
 #include "core/version.h"
 #include "google/api/resource.pb.h"
+#include "proto/field_behavior.h"
 #include "server/contract/canonical_text.h"
 #include "server/resources/accept_resource.h"
 #include "server/simulation/assumptions.h"
@@ -247,6 +248,17 @@ TEST(Hash, EveryFieldThatItReachesIsClassified) {
   EXPECT_GE(kinds, 4);
   for (const std::string& each : unclassified) {
     ADD_FAILURE() << each << ": say in input_fields.cpp whether a result depends on it";
+  }
+}
+
+TEST(Hash, ANumberOfAResourceThatItDoesNotReachIsMarkedAsOptional) {
+  for (const auto* type : resource_types()) {
+    if (!is_named_by(*v1::Simulation::descriptor(), *type)) continue;
+    for (int i = 0; i < type->field_count(); ++i) {
+      const auto& field = *type->field(i);
+      if (field.cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE) continue;
+      EXPECT_EQ(is_documentary(field), input_role(field) == InputRole::kLabel) << field.full_name();
+    }
   }
 }
 

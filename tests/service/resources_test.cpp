@@ -16,6 +16,7 @@
 #include "server/contract/constraints.h"
 #include "server/contract/output_only.h"
 #include "server/resources/provenance.h"
+#include "server/storage/resource_types.h"
 #include "tests/service/resource_calls.h"
 #include "tests/service/support.h"
 
@@ -418,6 +419,42 @@ TEST_F(ResourcesTest, RevisionsAreListedNewestFirst) {
   } while (!request.page_token().empty());
   EXPECT_THAT(names, ElementsAre("lubricants/x@5", "lubricants/x@4", "lubricants/x@3",
                                  "lubricants/x@2", "lubricants/x@1"));
+}
+
+TEST_F(ResourcesTest, ANumberThatTheModelDoesNotUseIsStoredAndMayBeUnset) {
+  v1::Lubricant oil = seed<v1::Lubricant>("lubricants/paper-fluid-1");
+  oil.clear_name();
+  ASSERT_FALSE(oil.has_flash_point_celsius());
+  oil.set_flash_point_celsius(212);
+  oil.set_pour_point_celsius(0);
+  ASSERT_TRUE(create(oil, "x").ok());
+  const v1::Lubricant stored = get("lubricants/x").message();
+  EXPECT_EQ(stored.flash_point_celsius(), 212);
+  EXPECT_TRUE(stored.has_pour_point_celsius()) << "0 C is a pour point";
+  for (const auto& entry : stored.provenance()) {
+    EXPECT_THAT(entry.field(), testing::Not(HasSubstr("point_celsius"))) << "it is no parameter";
+  }
+  EXPECT_THAT(ids("flash_point_celsius >= 200"), ElementsAre("x"));
+  EXPECT_THAT(ids("flash_point_celsius < 200"), IsEmpty());
+  v1::UpdateLubricantRequest request;
+  request.mutable_lubricant()->set_name("lubricants/x");
+  request.mutable_update_mask()->add_paths("flash_point_celsius");
+  ASSERT_TRUE(update_lubricant(app_, request).ok());
+  EXPECT_FALSE(get("lubricants/x").message().has_flash_point_celsius());
+  EXPECT_TRUE(get("lubricants/x").message().has_pour_point_celsius());
+  oil.add_provenance()->set_field("flash_point_celsius");
+  oil.set_pour_point_celsius(-200);
+  EXPECT_THAT(
+      complaints(create(oil, "y").error()),
+      testing::AllOf(HasSubstr("pour_point_celsius = -200 C; allowed: -120 to 100 C (ASTM D97)"),
+                     HasSubstr("\"flash_point_celsius\" is not a parameter")));
+}
+
+TEST(StoredNumbers, OfSchema1AreZeroWhereTheModelUsesThem) {
+  v1::Lubricant oil;
+  set_missing_numbers(oil);
+  EXPECT_TRUE(oil.has_relaxation_time_seconds());
+  EXPECT_FALSE(oil.has_flash_point_celsius());
 }
 
 class ListTest : public ResourcesTest {

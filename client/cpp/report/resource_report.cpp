@@ -70,7 +70,7 @@ void collect_parameters(const Message& message, const std::string& block,
   const auto& reflection = *message.GetReflection();
   for (int i = 0; i < type->field_count(); ++i) {
     const FieldDescriptor& field = *type->field(i);
-    if (field.is_repeated() || is_output_only(field)) continue;
+    if (field.is_repeated() || is_output_only(field) || is_documentary(field)) continue;
     if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE ||
         field.cpp_type() == FieldDescriptor::CPPTYPE_INT32) {
       parameters.push_back({&field, &message, block.empty() ? field.name() : block});
@@ -207,7 +207,8 @@ void add_identity(const Message& resource, Sheet& sheet) {
   const auto line = [&](const std::string& label, const std::string& value) {
     if (!value.empty()) sheet.line(label, value);
   };
-  // Every other text and enum that clients set, so that a new field is shown without a line here.
+  // Every other text, enum and number beside the parameters that clients set, so that a new field
+  // is shown without a line here.
   static const std::set<std::string> kInHeading = {"name", "display_name", "description"};
   static const std::map<std::string, const char*> kLabels = {
       {"base_oil_class", "base oil"}, {"external_sample_id", "sample"}, {"lims_id", "LIMS id"}};
@@ -215,6 +216,14 @@ void add_identity(const Message& resource, Sheet& sheet) {
   for (int i = 0; i < type.field_count(); ++i) {
     const FieldDescriptor& field = *type.field(i);
     if (field.is_repeated() || is_output_only(field) || kInHeading.contains(field.name())) continue;
+    if (is_documentary(field)) {
+      const Parameter number{&field, &resource, ""};
+      if (!is_known(number)) continue;
+      sheet.line(label_of_field(field.name()),
+                 significant(in_trade_unit(field.name(), number_of(number))),
+                 trade_unit_of_field(field.name()));
+      continue;
+    }
     const auto label = kLabels.find(field.name());
     line(label == kLabels.end() ? label_of_field(field.name()) : label->second,
          word_of(resource, field));

@@ -69,6 +69,8 @@ const std::map<std::string, Wording>& wordings() {
        {"", "", "Change of density with temperature, e.g. -0.63 kg/(m3 K)"}},
       {"base_oil_class", {"", "", "API group or chemistry; used to estimate missing parameters"}},
       {"condition", {"", "", "Fresh, sheared in a test, or used"}},
+      {"flash_point_celsius", {"", "", "Flash point, open cup (ASTM D92), e.g. 210 C"}},
+      {"pour_point_celsius", {"", "", "Pour point (ASTM D97), e.g. -45 C"}},
       {"display_name", {"--title", "", "Title"}},
       {"derived_from", {"", "", "The sample it came from, e.g. the fresh oil of a used one"}},
       {"external_sample_id", {"--sample-id", "", "Sample id of the laboratory"}},
@@ -91,6 +93,8 @@ struct Leaf {
   const FieldDescriptor* block;  ///< null: at the top level
   const FieldDescriptor* field;
 
+  /// Whether the number has a provenance of its own.
+  bool is_parameter() const { return block == nullptr && !is_documentary(*field); }
   std::string top() const { return block != nullptr ? block->name() : field->name(); }
   Message& parent(Message& resource) const {
     return block == nullptr ? resource
@@ -110,7 +114,7 @@ void set_number(const Leaf& leaf, Message& resource, double value) {
   } else {
     parent.GetReflection()->SetDouble(&parent, leaf.field, value);
   }
-  if (leaf.block == nullptr) set_user_provenance(resource, leaf.field->name());
+  if (leaf.is_parameter()) set_user_provenance(resource, leaf.field->name());
 }
 
 /// Returns the help text, or the field's name in words.
@@ -167,7 +171,7 @@ void add_number_flags(FlagList& flags, const Leaf& leaf, ResourceEdits& edits) {
                    set_number(leaf, resource, *value);
                  })) {
         complaints.push_back(name + " may be given only once");
-      } else if (leaf.block == nullptr) {
+      } else if (leaf.is_parameter()) {
         edits.touch("provenance");
       }
     }
@@ -253,6 +257,19 @@ std::vector<const FieldDescriptor*> numbers_of(const google::protobuf::Descripto
   return numbers;
 }
 
+/// Returns the number with this name, as field, flag or name of data sheets; null if there is none.
+const FieldDescriptor* find_number(const ResourceKind& kind, const std::string& word) {
+  const std::string kebab = lower_kebab(word);
+  for (const FieldDescriptor* field : numbers_of(*kind.prototype->GetDescriptor())) {
+    const std::string trade = std::string(",") + wording_of(*field).names + ",";
+    if (flag_of_field(field->name()) == "--" + kebab || parameter_word(*field) == kebab ||
+        trade.find(",--" + kebab + ",") != std::string::npos) {
+      return field;
+    }
+  }
+  return nullptr;
+}
+
 /// Whether flags set the fields of a nested message: measurements, a law, the driveline.
 bool is_flag_block(const FieldDescriptor& field) {
   return !field.is_repeated() && field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE &&
@@ -327,11 +344,15 @@ void add_edit_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits& ed
     }
   }
   add_label_flag(flags, edits);
+  const std::vector<const FieldDescriptor*> numbers = numbers_of(type);
+  for (const FieldDescriptor* field : numbers) {
+    if (is_documentary(*field)) add_number_flags(flags, {nullptr, field}, edits);
+  }
   flags.group(&type == v1::Lubricant::descriptor()
                   ? "Parameters of the model (a missing one is fitted or estimated, and shown)"
                   : "Parameters");
-  for (const FieldDescriptor* field : numbers_of(type)) {
-    add_number_flags(flags, {nullptr, field}, edits);
+  for (const FieldDescriptor* field : numbers) {
+    if (!is_documentary(*field)) add_number_flags(flags, {nullptr, field}, edits);
   }
   add_provenance_flags(flags, kind, edits);
 }
@@ -352,11 +373,10 @@ void add_removal_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits&
   unset.read = [&edits, &kind, words = unset.words](const std::vector<std::string>& texts,
                                                     Complaints& complaints) {
     for (const std::string& text : texts) {
-      std::string wrong;
       std::string name = text;
       std::replace(name.begin(), name.end(), '-', '_');
       const FieldDescriptor* field = kind.prototype->GetDescriptor()->FindFieldByName(name);
-      if (field == nullptr) field = find_parameter(kind, text, wrong);
+      if (field == nullptr) field = find_number(kind, text);
       if (field == nullptr || is_output_only(*field)) {
         const std::string meant = nearest(text, words);
         complaints.push_back("--unset: '" + printable(text) + "' is not a field of a " +
@@ -381,15 +401,9 @@ void add_removal_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits&
 
 const FieldDescriptor* find_parameter(const ResourceKind& kind, const std::string& word,
                                       std::string& wrong) {
-  const std::string kebab = lower_kebab(word);
-  for (const FieldDescriptor* field : numbers_of(*kind.prototype->GetDescriptor())) {
-    const std::string trade = std::string(",") + wording_of(*field).names + ",";
-    if (flag_of_field(field->name()) == "--" + kebab || parameter_word(*field) == kebab ||
-        trade.find(",--" + kebab + ",") != std::string::npos) {
-      return field;
-    }
-  }
-  const std::string meant = nearest(kebab, parameter_words(kind));
+  const FieldDescriptor* field = find_number(kind, word);
+  if (field != nullptr && !is_documentary(*field)) return field;
+  const std::string meant = nearest(lower_kebab(word), parameter_words(kind));
   wrong = "'" + printable(word) + "' is not a parameter of a " + kind.singular +
           (meant.empty() ? "" : " (is " + meant + " meant?)");
   return nullptr;
@@ -407,7 +421,7 @@ std::vector<TradeName> trade_names(const FieldDescriptor& field) {
 std::vector<std::string> parameter_words(const ResourceKind& kind) {
   std::vector<std::string> words;
   for (const FieldDescriptor* field : numbers_of(*kind.prototype->GetDescriptor())) {
-    words.push_back(parameter_word(*field));
+    if (!is_documentary(*field)) words.push_back(parameter_word(*field));
   }
   return words;
 }

@@ -39,6 +39,12 @@ export const PARAMETERS: Field[] = [
   parameter('density_slope_kilograms_per_cubic_metre_kelvin', 'Slope of the density'),
 ];
 
+/** Numbers of data sheets that the model does not use. */
+export const DOCUMENTED: Field[] = [
+  parameter('flash_point_celsius', 'Flash point'),
+  parameter('pour_point_celsius', 'Pour point'),
+];
+
 const yasutomi = (field: string, label: string, unit?: Unit): Field =>
   ({ path: `improved_yasutomi.${field}`, message: 'ImprovedYasutomi', field, label, ...(unit ? { unit } : {}) });
 
@@ -52,7 +58,7 @@ export const PRESSURE_LAW: Field[] = [
 ];
 
 /** All numbers of a lubricant that pages show. */
-export const ALL_FIELDS: Field[] = [...DATA_SHEET, ...PARAMETERS, ...PRESSURE_LAW];
+export const ALL_FIELDS: Field[] = [...DATA_SHEET, ...DOCUMENTED, ...PARAMETERS, ...PRESSURE_LAW];
 
 export const BASE_OILS: [string, string][] = [
   ['BASE_OIL_CLASS_UNSPECIFIED', 'not stated'],
@@ -75,7 +81,7 @@ export function valueOf(lubricant: Lubricant, field: Field): number | undefined 
 export const constraintOf = (field: Field, constraints: Constraint[] | undefined): Constraint | undefined =>
   constraints?.find((each) => each.message === field.message && each.field === field.field);
 
-const UNITS: Record<string, string> = { 'mm2/s': 'mm²/s', 'kg/m3': 'kg/m³', 'kg/(m3 K)': 'kg/(m³ K)', '1/m2': '1/m²' };
+const UNITS: Record<string, string> = { C: '°C', 'mm2/s': 'mm²/s', 'kg/m3': 'kg/m³', 'kg/(m3 K)': 'kg/(m³ K)', '1/m2': '1/m²' };
 /** A unit of the service with raised digits. */
 export const symbolOf = (unit: string): string => UNITS[unit] ?? unit;
 export const unitOf = (field: Field, constraint: Constraint | undefined): Unit => field.unit ?? plain(symbolOf(constraint?.unit ?? ''));

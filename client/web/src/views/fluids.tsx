@@ -9,7 +9,7 @@ import { remarkOf } from '../validity';
 import { ago, idOf, rounded } from '../format';
 import { readNumber, shown, written } from '../units';
 import { LawMapView, Viscosity } from './fluid_laws';
-import { ALL_FIELDS, BASE_OILS, constraintOf, DATA_SHEET, PARAMETERS, PRESSURE_LAW, rangeText, unitOf, valueOf, type Field } from '../lubricant_fields';
+import { ALL_FIELDS, BASE_OILS, constraintOf, DATA_SHEET, DOCUMENTED, PARAMETERS, PRESSURE_LAW, rangeText, unitOf, valueOf, type Field } from '../lubricant_fields';
 import { PROVENANCE } from '../provenance';
 import { useLoaded, useSchema } from '../resources';
 import { address, go, place, set } from '../router';
@@ -298,7 +298,7 @@ function FluidForm({ lubricant }: { lubricant?: Lubricant }) {
       </fieldset>
       <fieldset class="grid">
         <legend>Data sheet</legend>
-        {DATA_SHEET.map(input)}
+        {[...DATA_SHEET, ...DOCUMENTED].map(input)}
       </fieldset>
       {!lubricant && (
         <fieldset>
