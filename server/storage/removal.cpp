@@ -3,28 +3,39 @@
 #include <SQLiteCpp/Exception.h>
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <chrono>
-#include <map>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
+#include "proto/resource_kinds.h"
+#include "server/contract/resource_names.h"
 #include "server/storage/campaign_rows.h"
 #include "server/storage/event_rows.h"
+#include "server/storage/properties.h"
 #include "server/storage/resource_types.h"
 
 namespace tribodyn::server {
 namespace {
 
+/// Returns true for a column of simulations and campaigns.
+bool is_column(std::string_view name) {
+  const auto& fields = property_fields(kCampaigns);
+  return std::any_of(fields.begin(), fields.end(),
+                     [&](const PropertyField& each) { return each.key == name; });
+}
+
 /// Returns the condition that a simulation or a campaign used a revision of resource ?1, the latter
 /// also as one of its candidates. The columns have indexes.
 std::string uses(const StoredResource& resource, bool is_of_campaigns = false) {
-  static const std::map<std::string, std::string> kColumns = {{"lubricants", "lubricant"},
-                                                              {"gearSets", "gear_set"},
-                                                              {"surfaces", "surface"},
-                                                              {"vehicles", "vehicle"}};
   const std::string of_resource = " IN (SELECT id FROM revisions WHERE resource = ?1)";
-  std::string as_input = kColumns.at(collection_of(resource.name)) + of_resource;
+  std::string as_input = "?1 IS NULL";  // false, for a kind that is no column
+#define TRIBODYN_USES(Resource, field, kind, seed) \
+  if (collection_of(resource.name) == #kind && is_column(#field)) as_input = #field + of_resource;
+  TRIBODYN_RESOURCE_KINDS(TRIBODYN_USES)
+#undef TRIBODYN_USES
   if (!is_of_campaigns) return as_input;
   return "(" + as_input + " OR id IN (SELECT campaign FROM campaign_lubricants WHERE lubricant" +
          of_resource + "))";
