@@ -3,12 +3,14 @@
 #include <sqlite3.h>
 
 #include <atomic>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "google/rpc/error_details.pb.h"
 #include "proto/resource_kinds.h"
+#include "server/contract/resource_kinds.h"
 #include "server/storage/connections.h"
 #include "server/storage/seeds.h"
 
@@ -159,7 +161,7 @@ void AuthorizationTable::refuses_a_token_of_another_project() {
 }
 
 void AuthorizationTable::refuses_a_too_small_scope() {
-  std::map<Scope, int> methods;
+  std::map<Scope, std::size_t> methods;
   for (const Method& row : dispatcher_.methods()) {
     ++methods[row.scope];
     if (row.scope > Scope::kRead) {
@@ -169,7 +171,7 @@ void AuthorizationTable::refuses_a_too_small_scope() {
       expect_refused(row, "writer", google::rpc::PERMISSION_DENIED, "SCOPE_TOO_SMALL");
     }
   }
-  EXPECT_EQ(methods[Scope::kAdmin], 4) << "purges";
+  EXPECT_EQ(methods[Scope::kAdmin], std::size(kResourceCollections)) << "purges";
   EXPECT_EQ(methods.size(), 3U);
 }
 
