@@ -3,6 +3,9 @@
 #include <grpcpp/client_context.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <csignal>
 #include <limits>
 #include <optional>
@@ -388,6 +391,46 @@ TEST_F(GrpcTest, OpenReflectionStreamsDelayNobody) {
   EXPECT_TRUE(create(point_simulation(), &created).ok());
   streams.clear();
   EXPECT_TRUE(eventually([&] { return !client.list_services().empty(); })) << "and it recovers";
+}
+
+TEST_F(GrpcTest, HeavyBatchesDelayNoNewConnection) {
+  v1::BatchCreateLubricantsRequest batch;
+  batch.set_validate_only(true);
+  batch.mutable_read_mask()->add_paths("name");
+  v1::Lubricant fluid = seed<v1::Lubricant>("lubricants/paper-fluid-1");
+  for (int i = 0; i < 2000; ++i) {
+    fluid.set_name("lubricants/many-" + std::to_string(i));
+    *batch.add_requests()->mutable_lubricant() = fluid;
+  }
+  std::atomic<int> answered = 0;
+  const StopWatch batches;
+  std::vector<std::jthread> callers;
+  for (int i = 0; i < 4; ++i) {  // more than threads of their lane, and of gRPC
+    callers.emplace_back([&] {
+      grpc::ClientContext context;
+      v1::BatchCreateLubricantsResponse response;
+      const grpc::Status status = v1::LubricantService::NewStub(connect(address_, true))
+                                      ->BatchCreateLubricants(&context, batch, &response);
+      ++answered;
+      EXPECT_TRUE(status.ok()) << status.error_message();  // no connection is closed meanwhile
+    });
+  }
+  std::vector<double> seconds;  // of a connection with two calls
+  while (answered < 4) {
+    const auto channel = connect(address_, true);
+    const StopWatch watch;
+    grpc::ClientContext context;
+    v1::GetLubricantRequest request;
+    request.set_name("lubricants/paper-fluid-1");
+    v1::Lubricant read;
+    EXPECT_TRUE(
+        v1::LubricantService::NewStub(channel)->GetLubricant(&context, request, &read).ok());
+    EXPECT_TRUE(RawClient(channel).call("/grpc.health.v1.Health/Check", "").first.ok());
+    seconds.push_back(watch.seconds());
+  }
+  callers.clear();
+  EXPECT_LT(*std::max_element(seconds.begin(), seconds.end()), batches.seconds() / 2)
+      << "a connection waited for batches";
 }
 
 TEST_F(GrpcTest, RandomBytesNeitherCrashNorHangTheServer) {
