@@ -566,6 +566,10 @@ expect 0 campaigns pareto "$campaign" --least cost
 out_has 'No other candidate is better in both'
 expect 2 campaigns pareto "$campaign"
 err_has 'give one or two of --least FIGURE and --most FIGURE'
+expect 1 campaigns pareto "$campaign" --most mesh_loss_power_watts --least cots
+err_has '^  --least cots: no such column here; did you mean "cost"'
+expect 1 campaigns pareto "$campaign" --least film_ratio_minimun
+err_has '^  --least film_ratio_minimun: no such column here'
 expect 2 campaigns rank "$campaign" --least cost:median --where cost=3
 err_has 'is not COLUMN, COLUMN:min, COLUMN:max or COLUMN:mean'
 err_has 'is not FIGURE>=VALUE or FIGURE<=VALUE'
@@ -580,6 +584,9 @@ expect 0 screen "$table" --like paper-fluid-1 --carry asperity_friction
 carrying=$(grep -oE 'screen --campaign [0-9]+' "$folder/out" | grep -oE '[0-9]+$')
 printf '%s\n' name,relaxation_time_seconds,asperity_friction C,6e-7,3 >"$table"
 expect 0 campaigns append "$carrying" "$table"
+expect 2 campaigns append "$campaign" "$table"
+err_has "column 'asperity_friction' is no parameter \(is asperity_friction_coefficient meant\?\) and no column of the campaign"
+! grep -q -e --carry "$folder/err" || fail 'campaigns append suggests --carry, a flag of screen'
 expect 0 screen --campaign "$carrying"
 out_has 'best of 3 candidates'
 expect 0 campaigns promote "$campaign" --candidate 7 --lubricant promoted-oil

@@ -53,7 +53,8 @@ v1::AppendCandidatesRequest rows_to_append(const std::string& path, const v1::Sc
                                               campaign.lubricant_revision());
   base.stated = dynamic_cast<const v1::Lubricant&>(*stated);
   Screening further;
-  further.table = read_candidates(text, path, base, carried_columns(text, campaign));
+  further.table =
+      read_candidates(text, path, base, carried_columns(text, campaign), CarriedBy::kCampaign);
   if (!further.table.note.empty()) {
     std::cerr << "tribodyn: " << printable(further.table.note) << "\n";
   }

@@ -5,18 +5,25 @@
 
 #include "client/cpp/commands/campaign_command.h"
 #include "client/cpp/commands/candidate_flags.h"
+#include "client/cpp/commands/flag_errors.h"
 #include "client/cpp/report/candidate_decisions.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
 namespace {
 
+/// An objective with the flag that states it.
+struct TypedObjective {
+  v1::CandidateObjective objective;
+  TypedFlag flag;
+};
+
 /// What the decisions between candidates have in common.
 template <class Request>
 struct DecisionFlags {
   Request request;  ///< all but the name of the campaign and the objectives
   std::string campaign;
-  std::vector<v1::CandidateObjective> objectives;  ///< --least and --most, as given
+  std::vector<TypedObjective> objectives;  ///< --least and --most, as given
 };
 
 /// Adds --where and --weights.
@@ -41,7 +48,7 @@ void add_selection_flags(FlagList& list, Request& request) {
 }
 
 /// Adds --least and --most.
-void add_objective_flags(FlagList& list, std::vector<v1::CandidateObjective>& objectives) {
+void add_objective_flags(FlagList& list, std::vector<TypedObjective>& objectives) {
   for (const bool wants_most : {false, true}) {
     const std::string name = wants_most ? "--most" : "--least";
     Flag& flag = list.raw(
@@ -56,9 +63,10 @@ void add_objective_flags(FlagList& list, std::vector<v1::CandidateObjective>& ob
     flag.read = [&objectives, wants_most, name](const std::vector<std::string>& texts,
                                                 Complaints& complaints) {
       for (const std::string& text : texts) {
-        v1::CandidateObjective& objective = objectives.emplace_back();
-        objective.set_wants_most(wants_most);
-        read_candidate_figure(name, text, *objective.mutable_figure(), complaints);
+        TypedObjective& added = objectives.emplace_back();
+        added.flag = {name, {text}, ""};
+        added.objective.set_wants_most(wants_most);
+        read_candidate_figure(name, text, *added.objective.mutable_figure(), complaints);
       }
     };
   }
@@ -135,7 +143,9 @@ Command rank_command() {
         &Connection::rank_candidates, ranking_answer_text};
     Request& wanted = flags->request;
     *wanted.mutable_uncertainties() = {uncertainties->begin(), uncertainties->end()};
-    if (!flags->objectives.empty()) *wanted.mutable_objective() = flags->objectives.front();
+    if (!flags->objectives.empty()) {
+      *wanted.mutable_objective() = flags->objectives.front().objective;
+    }
     const auto answer = decided(kDecision, flags->campaign, wanted, options);
     return answer.candidates().empty() ? kExitFailed : kExitOk;
   };
@@ -167,10 +177,23 @@ Command pareto_command() {
         },
         &Connection::find_pareto_candidates, front_answer_text};
     Request& wanted = flags->request;
-    *wanted.mutable_second() = flags->objectives.back();
-    if (flags->objectives.size() == 2) *wanted.mutable_first() = flags->objectives.front();
-    const auto answer = decided(kDecision, flags->campaign, wanted, options);
-    return answer.candidates().empty() ? kExitFailed : kExitOk;
+    // Either flag may state either objective: the fields have no flag of their own.
+    TypedFlags typed;
+    const auto state = [&typed](const TypedObjective& stated, const std::string& field,
+                                v1::CandidateObjective& objective) {
+      objective = stated.objective;
+      typed[field] = stated.flag;
+    };
+    state(flags->objectives.back(), "second", *wanted.mutable_second());
+    if (flags->objectives.size() == 2) {
+      state(flags->objectives.front(), "first", *wanted.mutable_first());
+    }
+    try {
+      const auto answer = decided(kDecision, flags->campaign, wanted, options);
+      return answer.candidates().empty() ? kExitFailed : kExitOk;
+    } catch (const ServiceError& error) {
+      throw with_flag_names(error, typed);
+    }
   };
   return command;
 }

@@ -139,7 +139,8 @@ void add_screen_flags(FlagList& list, ScreenFlags& flags) {
             "table, e.g. cost, or of --contact-figures, e.g. film_ratio_minimum. Of a rig: of its "
             "ranking and COLUMN, as the figures of `campaigns pareto`, e.g. "
             "12/inefficiency_energy_mean_percent of campaign 12.",
-            [&flags](const std::string& column) { flags.pareto_column = column; });
+            [&flags](const std::string& column) { flags.pareto_column = column; })
+      .field = "second";
   list.toggle("--pareto-most", "In the Pareto front more of the column is better.",
               [&flags] { flags.wants_most = true; });
   list.toggle("--effects",

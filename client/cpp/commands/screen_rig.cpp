@@ -69,6 +69,7 @@ void add_screen_rig_flags(FlagList& list, ScreenRigFlags& flags) {
                           wants_most ? "Ranks by a figure of the rig of which more is better."
                                      : "Ranks by a figure of the rig of which less is better, as "
                                        "of `campaigns rank`, e.g. contact_temperature_kelvin:max.");
+    flag.field = "objective";
     flag.read = [&flags, wants_most, name](const std::vector<std::string>& texts,
                                            Complaints& complaints) {
       v1::CandidateObjective& objective = flags.objectives.emplace_back();

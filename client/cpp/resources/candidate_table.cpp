@@ -66,7 +66,8 @@ std::optional<RowColumn> name_column() {
 /// Finds columns of candidates.
 class ColumnFinder {
  public:
-  explicit ColumnFinder(const std::vector<std::string>& carried) {
+  ColumnFinder(const std::vector<std::string>& carried, CarriedBy carried_by)
+      : carried_by_(carried_by) {
     for (const std::string& each : carried) unseen_.insert(each);
   }
 
@@ -103,8 +104,10 @@ class ColumnFinder {
       if (meant.empty()) meant = near;
     }
     if (!meant.empty()) {
-      wrong = "is no parameter (is " + meant + " meant?); --carry '" + printable(header) +
-              "' carries it along as it is";
+      wrong = "is no parameter (is " + meant + " meant?)";
+      wrong += carried_by_ == CarriedBy::kFlag
+                   ? "; --carry '" + printable(header) + "' carries it along as it is"
+                   : " and no column of the campaign";
     } else if (is_of_lubricant || is_of_surface) {
       wrong = "is no parameter; `tribodyn schema` lists them";
     }
@@ -115,6 +118,7 @@ class ColumnFinder {
   std::vector<std::string> unseen() const { return {unseen_.begin(), unseen_.end()}; }
 
  private:
+  const CarriedBy carried_by_;
   std::set<std::string> unseen_;
   std::set<std::string> carried_;
 };
@@ -155,11 +159,11 @@ std::string with_decimal_point(std::string text) {
 class CandidateReader {
  public:
   CandidateReader(const std::string& text, const std::string& path, const CandidateBase& base,
-                  const std::vector<std::string>& carried)
+                  const std::vector<std::string>& carried, CarriedBy carried_by)
       : path_(path),
         base_(base),
         has_decimal_commas_(csv_separator(text) != ','),
-        finder_(carried),
+        finder_(carried, carried_by),
         cells_(
             text, path,
             [this](const std::string& header, std::string& wrong) {
@@ -433,8 +437,9 @@ double stated_uncertainty(const CandidateBase& base, const FieldDescriptor& fiel
 }
 
 CandidateTable read_candidates(const std::string& text, const std::string& path,
-                               const CandidateBase& base, const std::vector<std::string>& carried) {
-  return CandidateReader(text, path, base, carried).result();
+                               const CandidateBase& base, const std::vector<std::string>& carried,
+                               CarriedBy carried_by) {
+  return CandidateReader(text, path, base, carried, carried_by).result();
 }
 
 void characterise_candidates(Connection& connection, const CandidateBase& base,

@@ -49,6 +49,12 @@ struct CandidateBase {
   v1::Lubricant stated;
 };
 
+/// What lists the columns of a table that are carried along.
+enum class CarriedBy {
+  kFlag,      ///< --carry
+  kCampaign,  ///< the campaign to which the table adds
+};
+
 /// Returns the candidates of a table. A column is a parameter of the lubricant or of the surface in
 /// any spelling of RowColumn, with "lubricant." or "surface." before it where wanted; or a
 /// measurement of the lubricant; or FIELD.standard_uncertainty; or the candidates' "name",
@@ -56,7 +62,8 @@ struct CandidateBase {
 /// A header that resembles a parameter's name is an error unless `carried` lists it. Throws Failure
 /// (kExitUsage) that lists every error.
 CandidateTable read_candidates(const std::string& text, const std::string& path,
-                               const CandidateBase& base, const std::vector<std::string>& carried);
+                               const CandidateBase& base, const std::vector<std::string>& carried,
+                               CarriedBy carried_by = CarriedBy::kFlag);
 
 /// Computes the parameters of candidates with measurements on the server, which stores nothing, and
 /// sets `parameters` to those in which a candidate differs from the base. Sets the refusals of
