@@ -785,6 +785,34 @@ out_lines 3
 expect 0 jobs list --limit 2 --output json
 out_is_json
 
+echo "--- Ctrl-C before the watch says what it leaves behind"
+# interrupted_start PATTERN COMMAND...: interrupts the command while the server answers nothing.
+interrupted_start() {
+  local pattern=$1 code=0 pid
+  shift
+  asked="$*, then Ctrl-C at once"
+  kill -STOP "$server_pid"
+  "$client" "$@" >"$folder/out" 2>"$folder/err" </dev/null &
+  pid=$!
+  # Until SIGINT, the second lowest bit of the mask, is handled.
+  for _ in $(seq 200); do
+    grep -qE '^SigCgt:.*[2367abef]$' "/proc/$pid/status" && break
+    sleep 0.05
+  done
+  sleep 0.3 # a call is under way
+  kill -INT "$pid"
+  wait "$pid" || code=$?
+  kill -CONT "$server_pid"
+  [ "$code" -eq 130 ] || fail "$asked: exit code $code, not 130"
+  err_has "$pattern"
+}
+interrupted_start 'tribodyn: interrupted while simulations were submitted; `tribodyn jobs list` shows' \
+  curve --lubricant paper-fluid-1,paper-fluid-2 --speeds 20,60
+interrupted_start 'tribodyn: interrupted; nothing was submitted' \
+  curve --lubricant paper-fluid-1 --speeds 20,60 --validate-only
+interrupted_start 'tribodyn: interrupted; nothing was submitted' \
+  screen --lubricants paper-fluid-1,paper-fluid-2 --speeds 20,60
+
 echo "--- Ctrl-C stops the watch, not the job"
 "$client" jobs watch "$job" --progress lines >"$folder/out" 2>"$folder/err" </dev/null &
 watcher=$!

@@ -10,6 +10,7 @@
 #include "client/cpp/report/results.h"
 #include "client/cpp/resources/kind.h"
 #include "client/cpp/service/follow.h"
+#include "client/cpp/service/interrupt.h"
 #include "client/cpp/text/csv.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
@@ -170,10 +171,14 @@ int run_again(const JobFlags& flags, const CommonOptions& options) {
   Connection connection = options.connect();
   CreateOptions create;
   create.force = true;
+  InterruptText interrupts(kNothingSubmitted);
   std::vector<v1::Simulation> jobs;
-  for (const v1::Simulation& job : named_jobs(flags, connection)) {
+  const std::vector<v1::Simulation> named = named_jobs(flags, connection);
+  for (const v1::Simulation& job : named) {
+    interrupts.set(interrupted_submission(connection, jobs, false));
     jobs.push_back(connection.create_simulation(request_of(job), create));
   }
+  interrupts.set(interrupted_submission(connection, jobs, true));
   jobs = ended(connection, jobs, options);
   std::cout << shown_results(jobs, connection, options, false, flags.details);
   return report_failures(jobs);

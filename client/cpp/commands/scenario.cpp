@@ -5,6 +5,7 @@
 
 #include "client/cpp/report/inputs.h"
 #include "client/cpp/service/follow.h"
+#include "client/cpp/service/interrupt.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
@@ -213,9 +214,16 @@ std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& c
   std::vector<v1::Simulation> submitted;
   std::vector<std::string> labels;
   Complaints refusals;
+  InterruptText interrupts(kNothingSubmitted);
   const std::vector<v1::Simulation> simulations = simulations_of(scenario);
+  const auto state_progress = [&] {
+    if (scenario.create.validate_only) return;
+    interrupts.set(
+        interrupted_submission(connection, submitted, submitted.size() == simulations.size()));
+  };
   const Differences differences = differences_of(simulations);
   for (const v1::Simulation& simulation : simulations) {
+    state_progress();
     try {
       submitted.push_back(connection.create_simulation(simulation, scenario.create));
       const std::string apart = distinction(simulation, differences);
@@ -228,6 +236,7 @@ std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& c
       }
     }
   }
+  state_progress();
   if (scenario.create.validate_only) {
     if (!refusals.empty()) throw Failure(kExitFailed, joined(refusals, "\n"));
     for (const v1::Simulation& each : submitted) {

@@ -14,20 +14,21 @@ int run_screen(ScreenFlags& flags, const CommonOptions& options) {
         "--output csv is the ranking alone; use --output json for --pareto and --effects, "
         "or draw them with --plot");
   }
+  InterruptText interrupts(kNothingSubmitted);
   Connection connection = options.connect();
   if (!flags.campaign.empty() && connection.get_campaign(flags.campaign).has_rig()) {
     Complaints complaints;
     check_rig_screen(flags, complaints);
     if (!complaints.empty()) throw Failure(kExitUsage, joined(complaints, "\n"));
-    return run_rig_screen(flags, connection, options);
+    return run_rig_screen(flags, connection, options, interrupts);
   }
-  if (!flags.rig.machine.empty()) return run_rig_screen(flags, connection, options);
+  if (!flags.rig.machine.empty()) return run_rig_screen(flags, connection, options, interrupts);
   if (!flags.rig.objectives.empty()) {
     throw Failure(kExitUsage, "--least and --most: " + flags.campaign +
                                   " is of the axle, which is ranked by "
                                   "its inefficiency; `campaigns rank` ranks by any figure");
   }
-  return run_axle_screen(flags, connection, options);
+  return run_axle_screen(flags, connection, options, interrupts);
 }
 
 }  // namespace

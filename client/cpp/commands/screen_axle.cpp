@@ -106,7 +106,7 @@ void set_weights(const ScreenFlags& flags, Screening& screening) {
 
 /// Creates the campaign whose candidates the server makes or finds, or finds the one that the same
 /// command made.
-v1::Campaign made_campaign(ScreenFlags& flags, Connection& connection) {
+v1::Campaign made_campaign(ScreenFlags& flags, Connection& connection, InterruptText& interrupts) {
   Screening screening;
   screening.request = flags.request;
   set_screened_conditions(flags, screening);
@@ -119,16 +119,19 @@ v1::Campaign made_campaign(ScreenFlags& flags, Connection& connection) {
   set_made_candidates(flags, lubricants, request);
   CreateCampaignOptions create;
   create.request_id = screening_request_id(request, screening.base.model_version());
+  interrupts.set(kCampaignMayExist);
   return connection.create_campaign(request, create);
 }
 
 /// Returns the campaign that the command line describes, and writes its candidates and conditions
 /// to `screening`.
 v1::Campaign campaign_to_follow(ScreenFlags& flags, const v1::Schema& schema,
-                                Connection& connection, Screening& screening) {
+                                Connection& connection, InterruptText& interrupts,
+                                Screening& screening) {
   if (!flags.campaign.empty() || flags.has_design() || flags.has_lubricants()) {
-    const std::string name =
-        flags.campaign.empty() ? made_campaign(flags, connection).name() : flags.campaign;
+    const std::string name = flags.campaign.empty()
+                                 ? made_campaign(flags, connection, interrupts).name()
+                                 : flags.campaign;
     v1::Campaign campaign = connection.get_campaign(name, v1::CAMPAIGN_VIEW_FULL);
     screening = screening_of(connection, campaign);
     set_weights(flags, screening);
@@ -142,13 +145,14 @@ v1::Campaign campaign_to_follow(ScreenFlags& flags, const v1::Schema& schema,
   const v1::Campaign request = campaign_of(screening, table_title(flags.path));
   CreateCampaignOptions create;
   create.request_id = screening_request_id(request, screening.base.model_version());
+  interrupts.set(kCampaignMayExist);
   return connection.create_campaign(request, create);
 }
 
 /// Computes the points of a screening. Returns whether there are all of them.
 bool compute(ScreenFlags& flags, const v1::Schema& schema, Connection& connection,
-             const CommonOptions& options, Screening& screening) {
-  const v1::Campaign started = campaign_to_follow(flags, schema, connection, screening);
+             const CommonOptions& options, InterruptText& interrupts, Screening& screening) {
+  const v1::Campaign started = campaign_to_follow(flags, schema, connection, interrupts, screening);
   screening.program = program_of(connection);
   screening.campaign = started.name();
   screening.input_hash = started.input_hash();
@@ -156,6 +160,7 @@ bool compute(ScreenFlags& flags, const v1::Schema& schema, Connection& connectio
   none.figures.fill(std::nan(""));
   screening.points.assign(screening.table.size() * screening.conditions(), none);
   if (started.name().empty()) return true;
+  interrupts.set(interrupted_campaign(connection, started.name()));
   if (started.points_done() > 0 && !has_ended(started.state())) {
     std::cerr << "tribodyn: resumes " << started.name() << " after " << points_text(started)
               << "\n";
@@ -233,10 +238,11 @@ Decisions decisions_of(const ScreenFlags& flags, const Screening& screening,
 
 }  // namespace
 
-int run_axle_screen(ScreenFlags& flags, Connection& connection, const CommonOptions& options) {
+int run_axle_screen(ScreenFlags& flags, Connection& connection, const CommonOptions& options,
+                    InterruptText& interrupts) {
   const v1::Schema schema = connection.schema();
   Screening screening;
-  const bool is_complete = compute(flags, schema, connection, options, screening);
+  const bool is_complete = compute(flags, schema, connection, options, interrupts, screening);
   write_point_files(flags, screening);
   const std::vector<CandidateFigures> ranking = ranked(screening);
   const RankingConfidence confidence = flags.leaves_out_uncertainty

@@ -70,15 +70,17 @@ v1::Campaign rig_campaign_request(const ScreenFlags& flags, Connection& connecti
 
 /// Returns the campaign of a rig once it has ended or is paused, with its candidates.
 v1::Campaign computed_rig_campaign(const ScreenFlags& flags, Connection& connection,
-                                   const CommonOptions& options) {
+                                   const CommonOptions& options, InterruptText& interrupts) {
   std::string name = flags.campaign;
   if (name.empty()) {
     std::string model_version;
     const v1::Campaign request = rig_campaign_request(flags, connection, model_version);
     CreateCampaignOptions create;
     create.request_id = screening_request_id(request, model_version);
+    interrupts.set(kCampaignMayExist);
     name = connection.create_campaign(request, create).name();
   }
+  interrupts.set(interrupted_campaign(connection, name));
   go_on(flags, connection.get_campaign(name), connection);
   follow_to_end(connection, name, options.progress_form());
   return connection.get_campaign(name, v1::CAMPAIGN_VIEW_FULL);
@@ -86,8 +88,9 @@ v1::Campaign computed_rig_campaign(const ScreenFlags& flags, Connection& connect
 
 }  // namespace
 
-int run_rig_screen(const ScreenFlags& flags, Connection& connection, const CommonOptions& options) {
-  const v1::Campaign campaign = computed_rig_campaign(flags, connection, options);
+int run_rig_screen(const ScreenFlags& flags, Connection& connection, const CommonOptions& options,
+                   InterruptText& interrupts) {
+  const v1::Campaign campaign = computed_rig_campaign(flags, connection, options, interrupts);
   const bool is_complete = campaign.state() == v1::Campaign::SUCCEEDED;
   if (!is_complete) report_stop(campaign, connection);
   if (!flags.csv_path.empty()) {

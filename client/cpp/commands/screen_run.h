@@ -4,15 +4,20 @@
 #include <vector>
 
 #include "client/cpp/commands/screen_flags.h"
+#include "client/cpp/service/interrupt.h"
 
 namespace tribodyn::client {
 
+// `interrupts` says what Ctrl-C leaves behind until the campaign is followed.
+
 /// Screens candidates on the axle: by a campaign of the server, ranked by this program. Returns the
 /// exit code.
-int run_axle_screen(ScreenFlags& flags, Connection& connection, const CommonOptions& options);
+int run_axle_screen(ScreenFlags& flags, Connection& connection, const CommonOptions& options,
+                    InterruptText& interrupts);
 
 /// Screens candidates on a rig: by a campaign that the server ranks. Returns the exit code.
-int run_rig_screen(const ScreenFlags& flags, Connection& connection, const CommonOptions& options);
+int run_rig_screen(const ScreenFlags& flags, Connection& connection, const CommonOptions& options,
+                   InterruptText& interrupts);
 
 // What both have in common.
 

@@ -70,6 +70,10 @@ std::string points_text(const v1::Campaign& campaign) {
          " points";
 }
 
+std::string interrupted_campaign(const Connection& connection, const std::string& name) {
+  return "interrupted." + commands_that_go_on(connection, name);
+}
+
 v1::Campaign follow_to_end(Connection& connection, const std::string& name, ProgressForm form) {
   const InterruptGuard interrupts;
   ProgressDisplay display(std::cerr, form, standard_error_width());

@@ -13,6 +13,15 @@ std::string state_text(v1::Campaign::State state);
 /// Returns e.g. "12000 of 39000 points".
 std::string points_text(const v1::Campaign& campaign);
 
+/// What Ctrl-C prints while a campaign is created by a command that would find it again.
+inline constexpr char kCampaignMayExist[] =
+    "interrupted while the campaign was created. If the server has it, it goes on, and the same "
+    "command follows it; `tribodyn campaigns list` lists it.";
+
+/// Returns what Ctrl-C prints once the server has the campaign: the commands that follow, pause or
+/// cancel it.
+std::string interrupted_campaign(const Connection& connection, const std::string& name);
+
 /// Follows a campaign until it has ended or is paused, with progress on standard error, and returns
 /// it. Throws Failure: kExitInterrupted on Ctrl-C, kExitCannotConnect when the server is lost. In
 /// both cases the server continues the campaign; the message contains the commands that continue or

@@ -80,16 +80,22 @@ class Watches {
   bool is_open_ = true;
 };
 
+/// Returns the commands that watch or cancel the simulations with these ids, each with a space
+/// before it.
+std::string commands_that_resume(const std::string& program, const std::string& ids) {
+  if (ids.empty()) return "";
+  return "\n  The simulations go on. Watch them:   " + program + " jobs watch" + ids +
+         "\n                         Cancel them:  " + program + " jobs cancel" + ids;
+}
+
 std::string commands_that_resume(const std::string& program,
                                  const std::vector<v1::Simulation>& simulations,
                                  const std::vector<JobProgress>& picture) {
-  std::string names;
+  std::string ids;
   for (std::size_t i = 0; i < simulations.size(); ++i) {
-    if (!picture[i].ended) names += " " + resource_id(simulations[i].name());
+    if (!picture[i].ended) ids += " " + resource_id(simulations[i].name());
   }
-  if (names.empty()) return "";
-  return "\n  The simulations go on. Watch them:   " + program + " jobs watch" + names +
-         "\n                         Cancel them:  " + program + " jobs cancel" + names;
+  return commands_that_resume(program, ids);
 }
 
 }  // namespace
@@ -114,6 +120,20 @@ std::string state_text(v1::Simulation::State state) {
     default:
       return "unknown state";
   }
+}
+
+std::string interrupted_submission(const Connection& connection,
+                                   const std::vector<v1::Simulation>& submitted, bool are_all) {
+  const std::string program = program_of(connection);
+  std::string out = "interrupted", ids;
+  if (!are_all) {
+    out += " while simulations were submitted; `" + program +
+           " jobs list` shows which ones the server has";
+  }
+  for (const v1::Simulation& each : submitted) {
+    if (!has_ended(each.state())) ids += " " + resource_id(each.name());
+  }
+  return out + "." + commands_that_resume(program, ids);
 }
 
 std::vector<v1::Simulation> follow(Connection& connection,

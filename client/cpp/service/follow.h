@@ -15,6 +15,11 @@ std::string program_of(const Connection& connection);
 /// Returns "queued", "running", "succeeded", ...
 std::string state_text(v1::Simulation::State state);
 
+/// Returns what Ctrl-C prints while simulations are submitted one after the other, and once all
+/// are: the commands that watch or cancel those that the server has.
+std::string interrupted_submission(const Connection& connection,
+                                   const std::vector<v1::Simulation>& submitted, bool are_all);
+
 /// Watches simulations in one stream until all have ended and returns them with their results, in
 /// the given order. Shows one progress display on standard error. Throws Failure: kExitInterrupted
 /// on Ctrl-C, kExitCannotConnect when the server is lost. The simulations go on in both cases; the

@@ -6,6 +6,7 @@
 #include "client/cpp/failure.h"
 #include "client/cpp/report/inputs.h"
 #include "client/cpp/service/follow.h"
+#include "client/cpp/service/interrupt.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
@@ -17,12 +18,14 @@ PaperResults compute_paper_studies(const std::vector<const PaperFigure*>& figure
   std::vector<v1::Simulation> submitted;
   std::vector<std::string> labels;
   std::set<std::string> known;
+  InterruptText interrupts(kNothingSubmitted);
   for (const PaperFigure* figure : figures) {
     for (const PaperCurve& curve : figure->curves) {
       v1::Simulation simulation = simulation_of(curve);
       if (!known.insert(simulation.SerializeAsString()).second) continue;
       simulation.set_display_name("paper, figure " + figure->name);
       curves.push_back(curve);
+      interrupts.set(interrupted_submission(connection, submitted, false));
       submitted.push_back(connection.create_simulation(simulation));
       labels.push_back(resource_id(simulation.lubricant()) + ", " +
                        model_options_text(simulation.model_options()));
