@@ -443,6 +443,16 @@ expect 0 explain sheet-c sheet-c --other-condition sheared --draws 19
 out_has '^viscosity and its temperature law +-?[0-9.]+ '
 expect 1 point --lubricant sheet-a --speed 60 --condition sheared
 err_has '--condition.* states no viscosity after the shear test'
+expect 0 help models
+grep -E '^  [a-z-]+ +[-+][0-9.]+ +[-+][0-9.]+ +[-+][0-9.]+$' "$folder/out" >"$folder/stated"
+words=$(awk '{ printf "%s%s", (NR > 1 ? "," : ""), $1 }' "$folder/stated")
+expect 0 curve --lubricant paper-fluid-1 --speeds 20,60,100 --tolerance 1e-5 --compare "$words"
+# The last three lines: speed, inefficiency, then a column for each choice.
+tail -n 3 "$folder/out" | awk -v words="$words" '
+  { for (i = 3; i <= NF; ++i) changes[i - 2] = changes[i - 2] " " $i }
+  END { n = split(words, name, ","); for (i = 1; i <= n; ++i) print name[i] changes[i] }' >"$folder/computed"
+awk '{ print $1, $2, $3, $4 }' "$folder/stated" | diff - "$folder/computed" >"$folder/err" && [ -n "$words" ] ||
+  fail 'help models states other changes than curve --compare computes'
 expect 0 help columns
 out_has '^Columns of results'
 expect 0 schema

@@ -272,6 +272,7 @@ TEST(CurveReport, ShowsTheUncertaintyOfTheInputsBesideTheSolversError) {
   const std::string text = curve_report(curve, {}, &uncertainty);
   EXPECT_TRUE(has_text(text, "+/- 0.37"));
   EXPECT_TRUE(has_text(text, "Measure it."));
+  EXPECT_TRUE(has_text(text, "tribodyn help models"));
   EXPECT_FALSE(has_text(curve_report(curve, {}), "+/- 0.37"));
 }
 

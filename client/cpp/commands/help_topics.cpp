@@ -188,6 +188,35 @@ Names may have their collection, states and classes may be in upper or lower cas
 state, lubricant (my-oil, or my-oil@2 for a revision), gear_set, surface, vehicle, display_name,
 create_time, end_time, input_hash and labels; jobs also have pinned (true or false).
 )"},
+      {"models", "what the choices of the model are worth",
+       R"text(Choices of the model
+
+A figure errs by the solver, by its inputs and by the model. The first two stand beside it: as "solver
+error" and, from the uncertainties that lubricant and surface state, as a band. The third is in
+neither, and only measurements of an axle could state it. What each choice of a law is worth can be
+computed: `curve --compare` computes your curve also with the other choice. The mean inefficiency of
+paper-fluid-1 on the default axle, surface and vehicle then changes, in percent of it, by
+
+                                     20      60     100 km/h
+Another law or approximation
+  exact-hertz                     +1.22   +0.85   +0.50
+  hertz-from-total-load           +4.75   +0.59   +0.10
+  subtract-contact-point-motion  -15.73  -12.05  -12.58
+  load-dependent-mesh-data        +4.27   +0.40   -1.13
+  houpert                        -35.37  -35.40  -32.27
+An effect that the default leaves out
+  inlet-shear-heating             +2.12   +6.50  +12.03
+An effect of the default left out
+  isothermal                     +13.64  +32.81  +53.28
+  newtonian                       +9.77   +7.92   +5.40
+  no-limiting-shear-stress        +2.03   +6.39   +3.12
+  no-boundary-friction           -22.95   -3.11   -0.57
+
+houpert estimates the growth of viscosity with pressure instead of using the measured coefficient.
+damping-in-contact-only, energy-consistent and tabulated-friction-arms change less than 0.05 % here.
+Differences between lubricants mostly change less than the figures, which change together:
+  tribodyn curve --lubricant A,B --speeds 20,60,100 --compare exact-hertz,inlet-shear-heating
+)text"},
       {"configuration", "configuration file and environment",
        R"(Configuration
 

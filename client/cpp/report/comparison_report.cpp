@@ -514,6 +514,7 @@ std::string uncertainty_report(const v1::ComparePointsResponse& response) {
   sheet.remark(linearity_text(point.inefficiency_energy_mean_percent(), response.draws()));
   sheet.remark(advice_text(point.shares()));
   add_exact_inputs(response, sheet);
+  sheet.remark(kModelErrorRemark);
   return sheet.text();
 }
 

@@ -21,6 +21,11 @@ std::string comparison_csv(const v1::ComparePointsRequest& request,
 /// that count as exact.
 void add_contact_uncertainty(const v1::EvaluateContactResponse& contact, Sheet& sheet);
 
+/// The error that no uncertainty states.
+inline constexpr char kModelErrorRemark[] =
+    "The error of the model's laws is in no figure: `tribodyn help models` says what each choice "
+    "of a law is worth.";
+
 /// Returns the figures of one lubricant at one condition with the uncertainty of its inputs.
 std::string uncertainty_report(const v1::ComparePointsResponse& response);
 

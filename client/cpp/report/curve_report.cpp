@@ -177,6 +177,7 @@ std::string curve_report(const v1::Simulation& simulation, const ResultDetails& 
   if (uncertainty != nullptr && !uncertainty->remark.empty()) {
     notes.heading("Uncertainty of the inputs");
     notes.remark(uncertainty->remark);
+    notes.remark(kModelErrorRemark);
   }
   add_provenance(result, details.assumptions, notes);
   add_input_warnings(result.input_warnings(), notes);

@@ -75,7 +75,10 @@ const std::map<std::string, Wording>& wordings() {
       {"derived_from", {"", "", "The sample it came from, e.g. the fresh oil of a used one"}},
       {"external_sample_id", {"--sample-id", "", "Sample id of the laboratory"}},
       {"lims_id", {"", "", "Sample id in the laboratory information management system"}},
-      {"composite_rms_height_metres", {"", "", "sigma_G, e.g. 0.4um"}},
+      {"composite_rms_height_metres",
+       {"", "",
+        "sigma_G, e.g. 0.4um: RMS heights (Rq, Sq) of both flanks, the root of the sum of their "
+        "squares. A mean height (Ra, Sa) is a fifth smaller: Sq = 1.25 Sa of Gaussian heights"}},
       {"asperity_density_per_square_metre", {"", "", "eta_G, e.g. 2500/mm2"}},
       {"asperity_radius_metres", {"", "", "beta_G, e.g. 40um"}},
       {"half_backlash_metres", {"", "", "b, e.g. 60um"}},
