@@ -9,6 +9,7 @@
 
 #include "server/metrics/metrics.h"
 #include "server/scheduling/fair_queue.h"
+#include "server/scheduling/pace.h"
 #include "server/scheduling/turns.h"
 
 namespace tribodyn::server {
@@ -124,6 +125,8 @@ class ClaimPolicy {
   const QueueLimits limits_;
   int threads_ = 0;
   FairQueue queue_;
+  std::uint64_t left_ = 0;  // jobs that have left the queue for a thread
+  Pace pace_;
   Turns turns_;
   Reserved reserved_;
   std::map<std::string, Reserved> reserved_of_;  // by principal

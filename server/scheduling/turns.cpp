@@ -4,17 +4,19 @@
 
 namespace tribodyn::server {
 
-double Turns::next(const std::string& principal, double least_seconds, double work_seconds,
+double Turns::next(const std::string& principal, const Delays& delays, double work_seconds,
                    Time now) {
   using std::chrono::duration;
-  double seconds = std::max(least_seconds, kLeastSeconds);
+  const double least = std::clamp(delays.least, kLeastSeconds, kMostSeconds);
+  const double most = std::clamp(delays.most, least, kMostSeconds);
+  double seconds = least;
   const auto found = turns_.find(principal);
   if (found != turns_.end()) {
     seconds = std::max(seconds, duration<double>(found->second - now).count());
     by_time_.erase({found->second, principal});
     turns_.erase(found);
   }
-  seconds = std::min(seconds, kMostSeconds);
+  if (seconds > most) seconds = least;
   const Time turn =
       now + std::chrono::duration_cast<Time::duration>(duration<double>(seconds + work_seconds));
   turns_.emplace(principal, turn);

@@ -10,17 +10,24 @@
 namespace tribodyn::server {
 
 /// Computes retry delays for refused requests. The requests of one principal get successive times
-/// at the rate at which the server can compute them, so that they do not all return at once. Each
-/// call takes a time that grows with the logarithm of kMostKept at most. Not safe for concurrent
-/// access.
+/// at the rate at which the server computes them (pace.h), so that they do not all return at once.
+/// Each call takes a time that grows with the logarithm of kMostKept at most. Not safe for
+/// concurrent access.
 class Turns {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// Returns the delay of the principal's next request [s]: `least_seconds`, or longer, until after
+  /// Limits of the delays of refused requests [s].
+  struct Delays {
+    double least;
+    double most;
+  };
+
+  /// Returns the delay of the principal's next request [s]: the least one, or longer, until after
   /// its requests that were refused before; kLeastSeconds to kMostSeconds. The request will occupy
-  /// the processors for `work_seconds`.
-  double next(const std::string& principal, double least_seconds, double work_seconds, Time now);
+  /// the server for `work_seconds`. What would exceed the most begins at the least again: requests
+  /// then come more than once, but the server has work even if it becomes faster meanwhile.
+  double next(const std::string& principal, const Delays& delays, double work_seconds, Time now);
 
   std::size_t size() const { return turns_.size(); }
 

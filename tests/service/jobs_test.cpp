@@ -136,21 +136,25 @@ TEST(FairQueue, TimeDoesNotGrowWithTheNumberOfPrincipals) {
 TEST(Turns, SpreadsTheRetriesOfRefusedPrincipals) {
   Turns turns;
   const Turns::Time now;
-  EXPECT_EQ(turns.next("b", 0.001, 10, now), Turns::kLeastSeconds);
-  EXPECT_DOUBLE_EQ(turns.next("b", 0.001, 10, now), 10.02) << "after that of 10 s";
-  EXPECT_DOUBLE_EQ(turns.next("b", 0.001, 10, now), 20.02);
-  EXPECT_EQ(turns.next("c", 0.3, 10, now), 0.3) << "others are not held up by them";
-  for (int i = 0; i < 100; ++i) turns.next("b", 0.001, 10, now);
-  EXPECT_EQ(turns.next("b", 0.001, 10, now), 600);
+  const Turns::Delays delays{0.001, 100};
+  EXPECT_EQ(turns.next("b", delays, 10, now), Turns::kLeastSeconds);
+  EXPECT_DOUBLE_EQ(turns.next("b", delays, 10, now), 10.02) << "after that of 10 s";
+  EXPECT_DOUBLE_EQ(turns.next("b", delays, 10, now), 20.02);
+  EXPECT_EQ(turns.next("c", {0.3, 100}, 10, now), 0.3) << "others are not held up by them";
+  for (int i = 0; i < 7; ++i) turns.next("b", delays, 10, now);
+  EXPECT_EQ(turns.next("b", delays, 10, now), Turns::kLeastSeconds)
+      << "after the most, at the least";
+  EXPECT_DOUBLE_EQ(turns.next("b", delays, 10, now), 10.02);
+  EXPECT_EQ(turns.next("d", {1000, 2000}, 10, now), Turns::kMostSeconds);
   const Turns::Time later = now + std::chrono::seconds(700);
-  EXPECT_EQ(turns.next("b", 0.001, 10, later), Turns::kLeastSeconds);
+  EXPECT_EQ(turns.next("b", delays, 10, later), Turns::kLeastSeconds);
   EXPECT_EQ(turns.size(), 1U) << "turns that are past are forgotten";
 }
 
 TEST(Turns, RemembersABoundedNumberOfPrincipals) {
   Turns turns;
   for (std::size_t i = 0; i < 2 * Turns::kMostKept; ++i) {
-    turns.next(std::to_string(i), 1 + 1e-3 * static_cast<double>(i), 10, {});
+    turns.next(std::to_string(i), {1 + 1e-3 * static_cast<double>(i), 600}, 10, {});
   }
   EXPECT_EQ(turns.size(), Turns::kMostKept);
 }

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -83,6 +85,57 @@ TEST(ClaimPolicy, IsBoundedByCostAndLeavesRoomForOthers) {
   EXPECT_FALSE(policy.reserve({4, "a", 100}, {}).is_admitted)
       << "three quarters are for one principal";
   EXPECT_TRUE(policy.reserve({5, "b", 100}, {}).is_admitted);
+}
+
+/// 2,000 jobs are submitted at once to a queue of 300. Two threads take `job_seconds` for each, ten
+/// times its estimate, and at first, while the submissions take the processors too, five times as
+/// long. Whatever is refused comes back at the time it was told.
+struct Crowd {
+  double tries = 0;    // for a job
+  double seconds = 0;  // until all have run, over the time for which threads compute
+};
+Crowd crowd_of(double job_seconds) {
+  constexpr int kJobs = 2000;
+  ClaimPolicy policy = policy_of(2, {.jobs = 400});
+  std::multimap<double, std::int64_t> submissions, ends;  // by time [s]
+  for (int id = 1; id <= kJobs; ++id) submissions.emplace(1e-4 * id, id);
+  Crowd out;
+  double time = 0, computed = 0;
+  while (!submissions.empty() || !ends.empty()) {
+    const bool is_submission =
+        ends.empty() || (!submissions.empty() && submissions.begin()->first < ends.begin()->first);
+    std::multimap<double, std::int64_t>& events = is_submission ? submissions : ends;
+    const std::int64_t id = events.begin()->second;
+    time = events.begin()->first;
+    events.erase(events.begin());
+    const QueuedJob job{id, "a", job_seconds / 10};
+    if (is_submission) {
+      const auto now = Turns::Time() + std::chrono::duration_cast<Turns::Time::duration>(
+                                           std::chrono::duration<double>(1 + time));
+      const Admission admission = policy.reserve(job, now);
+      out.tries += 1.0 / kJobs;
+      if (admission.is_admitted) policy.push(job);
+      if (!admission.is_admitted) submissions.emplace(time + admission.retry_seconds, id);
+    } else {
+      policy.computed(id, job_seconds);
+      policy.end(id);
+    }
+    while (ends.size() < 2 && policy.may_begin()) {
+      const double seconds = computed < 100 * job_seconds ? 5 * job_seconds : job_seconds;
+      computed += seconds / 2;
+      ends.emplace(time + seconds, begun(policy));
+    }
+  }
+  out.seconds = time / computed;
+  return out;
+}
+
+TEST(ClaimPolicy, RefusedJobsComeBackAtThePaceAtWhichPlacesBecomeFree) {
+  for (const double job_seconds : {0.004, 0.03, 1.0}) {
+    const Crowd crowd = crowd_of(job_seconds);
+    EXPECT_LT(crowd.tries, 6) << job_seconds << " s for each job";
+    EXPECT_LT(crowd.seconds, 1.1) << "the queue runs dry";
+  }
 }
 
 TEST(ClaimPolicy, KeepsAThreadForInteractiveJobs) {

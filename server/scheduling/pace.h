@@ -1,0 +1,28 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace tribodyn::server {
+
+/// Measures the mean time between jobs that leave a full queue: what a job takes on all processors,
+/// with its calls and commits and whatever else the machine does. Not safe for concurrent access.
+class Pace {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  /// Takes note of the number of jobs that have left so far; to be called whenever a request finds
+  /// no place. Returns the mean time between two of them [s]; 0 until it is known.
+  double seconds_per_job(std::uint64_t left, Time now);
+
+  /// Without a call for so long the queue may have had places, and a new measurement begins.
+  static constexpr std::chrono::seconds kLongestGap{2};
+
+ private:
+  Time begin_;                     // of the present measurement
+  Time last_;                      // call
+  std::uint64_t left_before_ = 0;  // at begin_
+  double seconds_ = 0;
+};
+
+}  // namespace tribodyn::server
