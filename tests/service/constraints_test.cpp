@@ -477,6 +477,17 @@ TEST(Constraints, EveryBatchHasARowForItsSize) {
   EXPECT_EQ(batches, 2 * resource_types().size());
 }
 
+/// A zero that means the default or "not stated" takes no number from clients.
+TEST(Constraints, NoZeroThatMeansUnsetIsAValueOfItsRange) {
+  int rows = 0;
+  for (const Constraint& row : constraints()) {
+    if (row.zero != Zero::kUnset) continue;
+    ++rows;
+    EXPECT_TRUE(row.minimum > 0 || row.maximum < 0) << row.message << "." << row.field;
+  }
+  EXPECT_GT(rows, 40);
+}
+
 TEST(Constraints, EveryRowNamesAFieldThatExists) {
   const auto* pool = google::protobuf::DescriptorPool::generated_pool();
   for (const Constraint& row : constraints()) {
