@@ -45,6 +45,7 @@ struct CampaignJobs::Part {
   std::shared_ptr<StopSignal> stop;      // guarded by Running::mutex; of the present slice
   std::function<bool()> goes_on;         ///< of the present slice; null without one
   std::function<double()> used_seconds;  ///< by the present slice, without other jobs
+  double counted_seconds = 0;            ///< used_seconds() when it was last read
   std::optional<Tile> tile;
   std::shared_ptr<const CampaignInputs> inputs;  ///< with which the tile was taken
   std::unique_ptr<CampaignScene> candidate;      ///< of these inputs
