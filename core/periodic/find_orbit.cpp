@@ -25,8 +25,11 @@ constexpr double kDoubtOfFewSteps = 0.05;  // of the mean force: as much may be 
 constexpr double kDoubtOfSteps = 5e-4;
 constexpr double kMarchedDoubt = 1e-4;  // about multipliers by the march
 constexpr int kMostFailures = 3;
-constexpr int kTapSteps = 40;            // of a mesh cycle: a tap lasts for some percent of it
-constexpr int kStepsPerOscillation = 7;  // show its height to some percent; fewer show nothing
+constexpr int kTapSteps = 40;  // of a mesh cycle: a tap lasts for some percent of it
+// They show the height of an oscillation to some percent; fewer show nothing. From a tolerance of
+// 5e-3 on fewer are enough for the first of two grids.
+constexpr int kStepsPerOscillation = 7, kFewStepsPerOscillation = 5;
+constexpr double kToleranceOfFewSteps = 5e-3;
 
 /// Half-width of the interval around 1 in which a multiplier under frozen friction does not decide
 /// whether the orbit attracts: multipliers are good to 3e-3, and better if the period is short.
@@ -75,7 +78,10 @@ class GridRefinement {
 
   std::optional<PeriodicOrbit> refine() {
     const double of_oscillations =
-        kStepsPerOscillation * mesh_oscillations(system_, problem_.mean_pinion_speed);
+        (problem_.tolerance >= kToleranceOfFewSteps && search_.references == nullptr
+             ? kFewStepsPerOscillation
+             : kStepsPerOscillation) *
+        mesh_oscillations(system_, problem_.mean_pinion_speed);
     if (of_oscillations > kMostStepsPerCycle) return std::nullopt;
     const auto steps_from = [&](double fewest) {
       return static_cast<int>(std::max(of_oscillations, fewest));
