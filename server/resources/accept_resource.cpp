@@ -212,22 +212,20 @@ void check_provenance_of_computed(const v1::Lubricant& lubricant, const v1::Lubr
   }
 }
 
-}  // namespace
-
+/// A kind without rules of its own; those with rules follow.
 template <class Resource>
-std::optional<Resource> accept(const Resource& stated, const std::type_identity_t<Resource>*,
-                               const ResourceLookup& lookup, const std::string& path,
-                               Violations& violations) {
+std::optional<Resource> accept_kind(const Resource& stated, const std::type_identity_t<Resource>*,
+                                    const ResourceLookup& lookup, const std::string& path,
+                                    Violations& violations) {
   const std::size_t before = violations.size();
   Resource out = normalize(stated, lookup, path, Missing::kViolation, violations);
   if (violations.size() > before) return std::nullopt;
   return finalize(std::move(out));
 }
 
-template <>
-std::optional<v1::Lubricant> accept(const v1::Lubricant& stated, const v1::Lubricant* present,
-                                    const ResourceLookup& lookup, const std::string& path,
-                                    Violations& violations) {
+std::optional<v1::Lubricant> accept_kind(const v1::Lubricant& stated, const v1::Lubricant* present,
+                                         const ResourceLookup& lookup, const std::string& path,
+                                         Violations& violations) {
   const std::size_t before = violations.size();
   v1::Lubricant out = normalize(stated, lookup, path, Missing::kAllowed, violations);
   check_measurements(out.measurements(), join_path(path, "measurements"), violations);
@@ -250,6 +248,8 @@ std::optional<v1::Lubricant> accept(const v1::Lubricant& stated, const v1::Lubri
   return finalize(std::move(out));
 }
 
+}  // namespace
+
 std::optional<v1::GearSet> accept(const v1::GearSet& stated, const LocateSample& locate,
                                   const ResourceLookup& lookup, const std::string& path,
                                   Violations& violations) {
@@ -264,23 +264,33 @@ std::optional<v1::GearSet> accept(const v1::GearSet& stated, const LocateSample&
   return finalize(std::move(out));
 }
 
-template <>
-std::optional<v1::GearSet> accept(const v1::GearSet& stated, const v1::GearSet*,
-                                  const ResourceLookup& lookup, const std::string& path,
-                                  Violations& violations) {
+namespace {
+
+std::optional<v1::GearSet> accept_kind(const v1::GearSet& stated, const v1::GearSet*,
+                                       const ResourceLookup& lookup, const std::string& path,
+                                       Violations& violations) {
   return accept(stated, LocateSample(), lookup, path, violations);
 }
 
-template <>
-std::optional<v1::Surface> accept(const v1::Surface& stated, const v1::Surface*,
-                                  const ResourceLookup& lookup, const std::string& path,
-                                  Violations& violations) {
+std::optional<v1::Surface> accept_kind(const v1::Surface& stated, const v1::Surface*,
+                                       const ResourceLookup& lookup, const std::string& path,
+                                       Violations& violations) {
   const std::size_t before = violations.size();
   v1::Surface out = normalize(stated, lookup, path, Missing::kViolation, violations);
   check_count(out.measurements(), kMaximumMeasurements, join_path(path, "measurements"),
               violations);
   if (violations.size() > before) return std::nullopt;
   return finalize(std::move(out));
+}
+
+}  // namespace
+
+template <class Resource>
+std::optional<Resource> accept(const Resource& stated,
+                               const std::type_identity_t<Resource>* present,
+                               const ResourceLookup& lookup, const std::string& path,
+                               Violations& violations) {
+  return accept_kind(stated, present, lookup, path, violations);
 }
 
 #define TRIBODYN_ACCEPT(Resource, field, collection, seed)                               \

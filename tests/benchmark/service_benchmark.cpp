@@ -28,6 +28,7 @@
 #include "core/rig/rig.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
+#include "proto/field_behavior.h"
 #include "server/mapping/to_core.h"
 #include "server/simulation/compute.h"
 #include "server/simulation/compute_task.h"
@@ -837,7 +838,10 @@ v1::EvaluatePointsRequest evaluation(std::span<const v1::Lubricant> fluids) {
   const google::protobuf::Descriptor& lubricant = *v1::Lubricant::descriptor();
   for (int i = 0; i < lubricant.field_count(); ++i) {
     const google::protobuf::FieldDescriptor* field = lubricant.field(i);
-    if (field->cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE) continue;
+    if (field->cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE ||
+        is_documentary(*field)) {
+      continue;
+    }
     v1::CandidateColumn& column = *out.add_candidate_columns();
     column.set_path("lubricant." + field->name());
     for (const v1::Lubricant& fluid : fluids) {

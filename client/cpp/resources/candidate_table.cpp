@@ -17,6 +17,7 @@
 #include "client/cpp/text/nearest.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
+#include "proto/field_behavior.h"
 
 namespace tribodyn::client {
 namespace {
@@ -42,7 +43,8 @@ bool is_of_law(const FieldDescriptor& field) {
 /// Whether a column is a number that the model uses, if the server accepts its field.
 bool is_parameter(const RowColumn& column) {
   return column.kind == Kind::kNumber && (column.block == nullptr || is_of_law(*column.field)) &&
-         column.field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE;
+         column.field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE &&
+         !is_documentary(*column.field);
 }
 
 bool is_uncertainty(const RowColumn& column) {
