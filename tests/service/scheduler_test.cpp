@@ -89,7 +89,7 @@ TEST(ClaimPolicy, IsBoundedByCostAndLeavesRoomForOthers) {
 
 /// 2,000 jobs are submitted at once to a queue of 300. Two threads take `job_seconds` for each, ten
 /// times its estimate, and at first, while the submissions take the processors too, five times as
-/// long. Whatever is refused comes back at the time it was told.
+/// long. A refused job is submitted again after its retry delay.
 struct Crowd {
   double tries = 0;    // for a job
   double seconds = 0;  // until all have run, over the time for which threads compute

@@ -130,7 +130,7 @@ std::vector<std::unique_ptr<HalfSentCall>> half_sent(int port, int count, std::s
 TEST_F(Transport, HalfSentRequestsShareAMemoryLimitAndBlockNobody) {
   constexpr int kCalls = 6;
   constexpr std::size_t kBytes = 60 << 20;
-  // What was seen: 236 to 242 MiB, the process itself included. Without a limit it is 400.
+  // With the whole process, 236 to 242 MiB were measured; the six requests alone are 360 MiB.
   constexpr int kMostKibibytes = 300 * 1024;
   const auto calls = half_sent(port(), kUnderSanitizer ? 1 : kCalls, kBytes);
   if (!kUnderSanitizer) {  // a sanitizer's own memory is counted too, and varies
