@@ -12,6 +12,10 @@
 #include "server/resources/imports/import_surface.h"
 #include "server/resources/lubricant_parameters.h"
 #include "server/storage/seeds.h"
+#include "tribodyn/v1/gear_sets.pb.h"
+#include "tribodyn/v1/lubricants.pb.h"
+#include "tribodyn/v1/surfaces.pb.h"
+#include "tribodyn/v1/vehicles.pb.h"
 
 namespace tribodyn::server {
 namespace {
