@@ -36,7 +36,7 @@ class IncomingCall {
 
   /// Called once, on a thread of the lane, before the next two: a transport whose requests arrive
   /// in another form than protobuf's binary one converts them here. Returns the error of a request
-  /// that cannot be converted.
+  /// that cannot be converted, or that has not arrived.
   virtual std::optional<google::rpc::Status> prepare() { return std::nullopt; }
   /// Return the length of the serialised request [bytes], before prepare() an estimate, and a new
   /// reader of it.

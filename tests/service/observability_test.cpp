@@ -14,6 +14,7 @@
 
 #include "tests/service/grpc_fixture.h"
 #include "tests/service/raw_client.h"
+#include "tests/support/run_length.h"
 #include "tribodyn/v1/lubricants.grpc.pb.h"
 
 namespace tribodyn::server {
@@ -156,7 +157,8 @@ TEST_F(ObservabilityTest, ACallThatItsClientCancelsEndsEarlyAndIsCounted) {
   grpc::ClientContext context;
   context.AddMetadata("tribodyn-request-id", "to-be-cancelled");
   std::thread client([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    // The request has arrived by then, and the batch takes some ten times as long.
+    std::this_thread::sleep_for(std::chrono::milliseconds(kUnderSanitizer ? 1000 : 200));
     context.TryCancel();
   });
   v1::BatchCreateLubricantsResponse response;

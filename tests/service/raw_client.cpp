@@ -85,8 +85,8 @@ std::pair<grpc::Status, std::string> RawClient::call(const std::string& method,
   return {status, text(response)};
 }
 
-std::pair<grpc::Status, std::vector<std::string>> RawClient::read_all(const std::string& method,
-                                                                      const std::string& request) {
+std::pair<grpc::Status, std::vector<std::string>> RawClient::read_all(
+    const std::string& method, const std::optional<std::string>& request) {
   const auto stream = open(method, request);
   stream->call->WritesDone(nullptr);
   stream->step();
@@ -104,13 +104,13 @@ std::pair<grpc::Status, std::vector<std::string>> RawClient::read_all(const std:
 }
 
 std::shared_ptr<RawClient::Stream> RawClient::open(const std::string& method,
-                                                   const std::string& request) {
+                                                   const std::optional<std::string>& request) {
   auto stream = std::make_shared<Stream>();
   grpc::GenericStub stub(channel_);
   stream->call = stub.PrepareCall(&stream->context, method, &stream->queue);
   stream->call->StartCall(nullptr);
-  if (stream->step()) {
-    stream->call->Write(buffer(request), nullptr);
+  if (stream->step() && request) {
+    stream->call->Write(buffer(*request), nullptr);
     stream->step();
   }
   return stream;

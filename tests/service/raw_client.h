@@ -4,6 +4,7 @@
 #include <grpcpp/support/status.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,13 +19,15 @@ class RawClient {
   /// Makes a unary call. Returns the status and the answer as bytes.
   std::pair<grpc::Status, std::string> call(const std::string& method, const std::string& request);
 
-  /// Makes a call that answers with a stream. Returns the status and all answers.
-  std::pair<grpc::Status, std::vector<std::string>> read_all(const std::string& method,
-                                                             const std::string& request);
+  /// Makes a call that answers with a stream. Returns the status and all answers. Without a request
+  /// the client ends its side of the call at once.
+  std::pair<grpc::Status, std::vector<std::string>> read_all(
+      const std::string& method, const std::optional<std::string>& request);
 
   /// A stream on which one request is sent and nothing is read. It is open while the object exists.
   struct Stream;
-  std::shared_ptr<Stream> open(const std::string& method, const std::string& request);
+  std::shared_ptr<Stream> open(const std::string& method,
+                               const std::optional<std::string>& request);
 
   /// Returns the answer of server reflection to "list services".
   std::string list_services();

@@ -7,9 +7,11 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "server/application/call_dispatcher.h"
+#include "server/application/errors.h"
 
 namespace tribodyn::server {
 
@@ -34,6 +36,13 @@ class GrpcCall : public Call {
     this->credentials = credentials_of(its_context, peer);
   }
 
+  /// gRPC also hands over a call that its client has ended before the request arrived: such a call
+  /// is not one with an empty request.
+  std::optional<google::rpc::Status> prepare() override {
+    if (request_.Valid()) return std::nullopt;
+    return error(google::rpc::CANCELLED, v1::ERROR_REASON_CANCELLED,
+                 "the client ended the call before it had sent a request; nothing has changed");
+  }
   std::size_t request_size() const override { return request_.Length(); }
   std::unique_ptr<google::protobuf::io::ZeroCopyInputStream> read_request() override {
     return std::make_unique<grpc::ProtoBufferReader>(&request_);
