@@ -112,6 +112,7 @@ class GrantedSource final : public AnyMessageSource {
   bool is_short() const override { return source_->is_short(); }
   std::string tag() const override { return source_->tag(); }
   bool may_continue() const override { return source_->may_continue(); }
+  bool may_be_ahead() const override { return source_->may_be_ahead(); }
   google::rpc::Status error() const override {
     return has_ended_ ? token_refused() : source_->error();
   }

@@ -41,6 +41,9 @@ class OpenColumns {
     return std::clamp(share / unit * unit, kLeastRun, kChunkValues);
   }
 
+  /// Returns true if every open source may have two of the longest chunks.
+  bool has_room_for_two() const { return 2 * kChunkValues * open_->load() <= kOpenHistoryValues; }
+
  private:
   static constexpr std::int64_t kLeastRun = 512;  // rows; even, as pairs of an overview are
   std::shared_ptr<std::atomic<int>> open_;
@@ -84,6 +87,7 @@ class ColumnSource : public MessageSource<Response> {
   }
 
   bool is_short() const final { return rows_ <= kHistoryBlock; }
+  bool may_be_ahead() const final { return open_.has_room_for_two(); }
   google::rpc::Status error() const final { return error_; }
 
  protected:

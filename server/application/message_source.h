@@ -41,6 +41,9 @@ class AnyMessageSource {
   /// Returns false if the source has nothing to say before the observer's next notification. Takes
   /// about a microsecond.
   virtual bool may_continue() const { return true; }
+  /// Returns true if the next message may be pulled before the present one is written: it will not
+  /// change meanwhile, and two messages are not too large.
+  virtual bool may_be_ahead() const { return false; }
   /// OK (code 0) or why the stream broke off.
   virtual google::rpc::Status error() const { return {}; }
 };

@@ -13,71 +13,71 @@ void StreamMachine::open(ReplySource source, Clock::time_point end) {
   {
     const std::lock_guard lock(mutex_);
     end_ = end;
-    state_ = State::kAsking;
+    is_open_ = true;
+    is_stepping_ = true;
   }
   step();
 }
 
-void StreamMachine::refuse(const google::rpc::Status& status) { finish(status); }
+void StreamMachine::refuse(const google::rpc::Status& status) {
+  finish(std::unique_lock(mutex_), status);
+}
 
 void StreamMachine::changed() {
   {
     const std::lock_guard lock(mutex_);
     again_ = true;
-    if (state_ != State::kIdle) return;
-    state_ = State::kAsking;
+    if (!is_idle()) return;
+    is_stepping_ = true;
   }
   transport_.run_step();
 }
 
 void StreamMachine::close(const google::rpc::Status& status) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (state_ == State::kFinished) return;
-    if (state_ != State::kIdle) {
-      if (!closing_) closing_ = status;
-      return;
-    }
-    state_ = State::kFinished;
-  }
-  transport_.finish(status);
+  std::unique_lock lock(mutex_);
+  if (!closing_) closing_ = status;
+  if (is_idle()) finish(std::move(lock), status);
 }
 
 void StreamMachine::written(bool ok) {
+  std::unique_lock lock(mutex_);
+  is_writing_ = false;
   if (!ok) {
-    return finish(error(google::rpc::CANCELLED, v1::ERROR_REASON_CANCELLED, "the client is gone"));
+    closing_ = error(google::rpc::CANCELLED, v1::ERROR_REASON_CANCELLED, "the client is gone");
   }
-  {
-    const std::lock_guard lock(mutex_);
-    const bool has_reason = again_ || closing_ || source_->may_continue();
-    state_ = has_reason ? State::kAsking : State::kIdle;
-    if (!has_reason) return;
-  }
-  source_->is_short() ? transport_.run_short_step() : transport_.run_step();
+  if (is_stepping_) return;  // the step finds the changes
+  if (!ok) return finish(std::move(lock), *closing_);
+  if (!again_ && !closing_ && !prepared_ && !source_->may_continue()) return;
+  is_stepping_ = true;
+  const bool is_short = prepared_ || source_->is_short();
+  lock.unlock();
+  is_short ? transport_.run_short_step() : transport_.run_step();
 }
 
 void StreamMachine::step() {
   using Step = AnyMessageSource::Step;
-  for (;;) {
-    if (const auto closing = begin_step()) return finish(*closing);
+  Reply message;
+  if (!begin_step(message)) return;
+  while (!message) {
     google::rpc::Status end;
-    const Reply message(prototype_.New());
-    switch (next_step(*source_, *message, end)) {
-      case Step::kMessage: {
-        {
-          const std::lock_guard lock(mutex_);
-          state_ = State::kWriting;
-          writing_since_ = Clock::now();
-        }
-        if (const auto failed = transport_.write(*message)) finish(*failed);
-        return;
-      }
+    Reply next(prototype_.New());
+    switch (next_step(*source_, *next, end)) {
+      case Step::kMessage:
+        message = std::move(next);
+        break;
       case Step::kEnd:
-        return finish(end);
+        close(end);
+        [[fallthrough]];
       case Step::kWait:
-        if (go_idle()) return;
+        if (go_idle() || !begin_step(message)) return;
     }
   }
+  const bool is_ahead = source_->may_be_ahead();
+  if (!begin_write(message, is_ahead)) return;
+  if (const auto failed = transport_.write(*message)) {
+    return finish(std::unique_lock(mutex_), *failed);
+  }
+  if (is_ahead) transport_.run_step();
 }
 
 std::optional<StreamMachine::Clock::time_point> StreamMachine::look_at_clock(
@@ -87,9 +87,8 @@ std::optional<StreamMachine::Clock::time_point> StreamMachine::look_at_clock(
   {
     const std::lock_guard lock(mutex_);
     has_ended = now >= end_;
-    is_stuck =
-        now >= end_ + kLastWrite || (state_ == State::kWriting && now >= writing_since_ + unread_);
-    next = (state_ == State::kWriting ? writing_since_ : now) + unread_;
+    is_stuck = now >= end_ + kLastWrite || (is_writing_ && now >= writing_since_ + unread_);
+    next = (is_writing_ ? writing_since_ : now) + unread_;
     next = std::min(next, has_ended ? end_ + kLastWrite : end_);
   }
   if (is_stuck) {
@@ -100,24 +99,49 @@ std::optional<StreamMachine::Clock::time_point> StreamMachine::look_at_clock(
   return next;
 }
 
-void StreamMachine::finish(const google::rpc::Status& status) {
-  {
-    const std::lock_guard lock(mutex_);
-    state_ = State::kFinished;
-  }
+bool StreamMachine::is_idle() const {
+  return is_open_ && !is_stepping_ && !is_writing_ && !is_finished_;
+}
+
+void StreamMachine::finish(std::unique_lock<std::mutex> lock, google::rpc::Status status) {
+  is_finished_ = true;
+  lock.unlock();
   transport_.finish(status);
 }
 
-std::optional<google::rpc::Status> StreamMachine::begin_step() {
-  const std::lock_guard lock(mutex_);
+bool StreamMachine::begin_step(Reply& prepared) {
+  std::unique_lock lock(mutex_);
   again_ = false;
-  return closing_;
+  if (has_closed(lock)) return false;
+  prepared = std::move(prepared_);
+  return true;
+}
+
+bool StreamMachine::begin_write(Reply& message, bool is_ahead) {
+  std::unique_lock lock(mutex_);
+  if (has_closed(lock)) return false;
+  if (is_writing_) {
+    prepared_ = std::move(message);
+    is_stepping_ = false;
+    return false;
+  }
+  is_writing_ = true;
+  writing_since_ = Clock::now();
+  is_stepping_ = is_ahead;
+  return true;
+}
+
+bool StreamMachine::has_closed(std::unique_lock<std::mutex>& lock) {
+  if (!closing_) return false;
+  is_stepping_ = false;
+  if (!is_writing_) finish(std::move(lock), *closing_);
+  return true;
 }
 
 bool StreamMachine::go_idle() {
   const std::lock_guard lock(mutex_);
   if (again_ || closing_) return false;
-  state_ = State::kIdle;
+  is_stepping_ = false;
   return true;
 }
 

@@ -34,11 +34,11 @@ class StreamTransport {
 };
 
 /// The states of one server stream, for every transport: pulls the messages of a source and writes
-/// one at a time, the next one only when the one before is written, so that no more than one
-/// message waits for a slow client. Pulls again when the source reports a change. Closes the stream
-/// at its end, or when the transport or a shutdown requests it, as soon as no write is under way;
-/// cuts off a client that reads nothing. Safe for concurrent access: the thread that brings it into
-/// kAsking or kWriting owns the source until it leaves that state.
+/// one at a time. While a message is written, the next one is prepared if the source allows it, and
+/// no more than these two wait for a slow client. Pulls again when the source reports a change.
+/// Closes the stream at its end, or when the transport or a shutdown requests it, as soon as no
+/// write is under way; cuts off a client that reads nothing. Safe for concurrent access: the thread
+/// that takes a step owns the source until the end of the step.
 class StreamMachine : public Observer {
  public:
   using Clock = std::chrono::steady_clock;
@@ -54,14 +54,14 @@ class StreamMachine : public Observer {
   /// Ends a stream that was not opened.
   void refuse(const google::rpc::Status& status);
 
-  /// Asks the source soon.
+  /// Pulls from the source soon.
   void changed() override;
   /// Ends the stream once no write is under way. The first of several statuses counts.
   void close(const google::rpc::Status& status);
   /// A write has ended; `ok` is false if the client is gone.
   void written(bool ok);
-  /// Pulls from the source, and writes or ends. Only the two functions of StreamTransport above may
-  /// call it.
+  /// Takes a step: writes the prepared message, or pulls one and writes or keeps it, or ends. Only
+  /// the two functions of StreamTransport above may call it.
   void step();
 
   /// Closes the stream at its end, and cuts off a client that has not read a message for `unread`,
@@ -71,30 +71,36 @@ class StreamMachine : public Observer {
   static constexpr auto kLastWrite = std::chrono::seconds(5);
 
  private:
-  enum class State {
-    kOpening,
-    kIdle,     ///< the source had nothing
-    kAsking,   ///< a step runs or will run
-    kWriting,  ///< a write is under way
-    kFinished
-  };
-
-  void finish(const google::rpc::Status& status);
-  /// Returns the status with which to end now; nullopt: go on.
-  std::optional<google::rpc::Status> begin_step();
-  /// Returns false if the source must be asked again.
+  /// Returns true if only an event can cause a step. Requires the lock.
+  bool is_idle() const;
+  /// Ends the stream. `lock` is that of mutex_.
+  void finish(std::unique_lock<std::mutex> lock, google::rpc::Status status);
+  /// Moves the prepared message, or null, to `prepared`. Returns false if the step is over.
+  bool begin_step(Reply& prepared);
+  /// Returns true if the message must be written now. Otherwise the step is over, and the end of
+  /// the present write causes the one that writes the message. `is_ahead`: a step follows at once.
+  bool begin_write(Reply& message, bool is_ahead);
+  /// Returns true if the stream is to close: the step is over, and so is the stream unless a write
+  /// is under way.
+  bool has_closed(std::unique_lock<std::mutex>& lock);
+  /// Ends a step in which the source had nothing. Returns false if the step must go on.
   bool go_idle();
 
   StreamTransport& transport_;
   const google::protobuf::Message& prototype_;
   const Clock::duration unread_;
-  ReplySource source_;  // set by open(); then the owner's
+  ReplySource source_;  // set by open(); then the step's
   std::mutex mutex_;
-  State state_ = State::kOpening;  // guarded by mutex_
-  bool again_ = false;             // guarded by mutex_; changed since the last step began
-  std::optional<google::rpc::Status> closing_;  // guarded by mutex_
-  Clock::time_point end_;                       // guarded by mutex_
-  Clock::time_point writing_since_;             // guarded by mutex_; of kWriting
+  // All below are guarded by mutex_.
+  bool is_open_ = false;
+  bool is_stepping_ = false;  // a step runs or will run
+  bool is_writing_ = false;   // a write is under way
+  bool is_finished_ = false;
+  bool again_ = false;  // changed since the last step began
+  Reply prepared_;      // while a write is under way: the next message
+  std::optional<google::rpc::Status> closing_;
+  Clock::time_point end_;
+  Clock::time_point writing_since_;  // of the write under way
 };
 
 }  // namespace tribodyn::server

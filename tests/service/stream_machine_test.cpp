@@ -36,8 +36,11 @@ google::rpc::Status status_of(google::rpc::Code code) {
 /// Messages 1, 2, ... as they become available. Complains if it is asked by two threads at once.
 class CountingSource : public AnyMessageSource {
  public:
-  explicit CountingSource(bool is_short = false) : is_short_(is_short) {}
+  explicit CountingSource(bool is_short = false, bool is_ahead = false)
+      : is_short_(is_short), is_ahead_(is_ahead) {}
   bool is_short() const override { return is_short_; }
+  bool may_be_ahead() const override { return is_ahead_; }
+  int given() const { return given_; }
   bool may_continue() const override { return !says_when_it_waits || given_ < available; }
   Step next_message(google::protobuf::Message& out) override {
     EXPECT_FALSE(is_asked_.exchange(true)) << "two threads ask at once";
@@ -59,7 +62,7 @@ class CountingSource : public AnyMessageSource {
   bool says_when_it_waits = false;
 
  private:
-  const bool is_short_;
+  const bool is_short_, is_ahead_;
   std::atomic<bool> is_asked_ = false;
   int given_ = 0;  // the machine lets one thread ask at a time
   bool has_ended_ = false;
@@ -123,8 +126,10 @@ class ManualTransport : public CheckedTransport {
 
 struct Manual {
   explicit Manual(Clock::duration unread = std::chrono::minutes(1),
-                  Clock::duration lasts = std::chrono::hours(1))
-      : machine(transport, v1::SimulationEvent::default_instance(), unread), begin(Clock::now()) {
+                  Clock::duration lasts = std::chrono::hours(1), bool is_ahead = false)
+      : source(std::make_shared<CountingSource>(false, is_ahead)),
+        machine(transport, v1::SimulationEvent::default_instance(), unread),
+        begin(Clock::now()) {
     machine.open(source, begin + lasts);
   }
   bool run_step() {
@@ -147,7 +152,7 @@ struct Manual {
   }
   int code() const { return transport.end() ? transport.end()->code() : -1; }
 
-  std::shared_ptr<CountingSource> source = std::make_shared<CountingSource>();
+  std::shared_ptr<CountingSource> source;
   ManualTransport transport;
   StreamMachine machine;
   Clock::time_point begin;
@@ -157,7 +162,7 @@ TEST(StreamMachine, WritesEveryMessageOnceInEveryOrderOfEvents) {
   const int schedules = kUnderSanitizer ? 2000 : 20'000;
   for (int seed = 0; seed < schedules; ++seed) {
     std::mt19937 random(static_cast<unsigned>(seed));
-    Manual stream;
+    Manual stream(std::chrono::minutes(1), std::chrono::hours(1), seed % 2 == 1);
     bool is_disturbed = false;
     for (int i = 0; i < 60; ++i) {
       switch (random() % 12) {
@@ -215,6 +220,42 @@ TEST(StreamMachine, HoldsOneMessageForASlowClient) {
   for (int i = 0; i < 100; ++i) stream.machine.changed();
   EXPECT_FALSE(stream.transport.is_step_due) << "it is asked again when the first one is written";
   EXPECT_EQ(stream.transport.begun(), 1);
+}
+
+TEST(StreamMachine, PreparesOneMessageWhileTheClientReadsTheOneBefore) {
+  Manual stream(std::chrono::minutes(1), std::chrono::hours(1), true);
+  for (int i = 0; i < 100; ++i) stream.feed();
+  for (int written = 1; written < 4; ++written) {
+    EXPECT_TRUE(stream.run_step());
+    EXPECT_EQ(stream.transport.begun(), written);
+    EXPECT_TRUE(stream.run_step()) << "the write goes on meanwhile";
+    EXPECT_EQ(stream.source->given(), written + 1);
+    stream.machine.changed();
+    EXPECT_FALSE(stream.transport.is_step_due) << "no third message waits for the client";
+    EXPECT_TRUE(stream.end_write());
+  }
+}
+
+TEST(StreamMachine, AMessageThatIsWrittenBeforeTheNextOneIsPreparedDelaysNothing) {
+  Manual stream(std::chrono::minutes(1), std::chrono::hours(1), true);
+  for (int i = 0; i < 3; ++i) stream.feed();
+  EXPECT_TRUE(stream.run_step());
+  EXPECT_TRUE(stream.end_write());
+  EXPECT_TRUE(stream.run_step());
+  EXPECT_EQ(stream.transport.begun(), 2) << "the step writes what it has pulled";
+}
+
+TEST(StreamMachine, AClientThatIsGoneReceivesNoPreparedMessage) {
+  for (const bool is_prepared : {true, false}) {
+    Manual stream(std::chrono::minutes(1), std::chrono::hours(1), true);
+    for (int i = 0; i < 3; ++i) stream.feed();
+    EXPECT_TRUE(stream.run_step());
+    if (is_prepared) stream.run_step();
+    EXPECT_TRUE(stream.end_write(false));
+    stream.run_step();
+    EXPECT_EQ(stream.code(), google::rpc::CANCELLED);
+    EXPECT_EQ(stream.transport.begun(), 1);
+  }
 }
 
 TEST(StreamMachine, TheFirstMessageNeedsNoFurtherThread) {
@@ -352,8 +393,8 @@ TEST(StreamMachine, WritesEveryMessageOnceFromManyThreads) {
   constexpr int kMessages = 200;
   const int streams = kUnderSanitizer ? 20 : 100;
   for (int round = 0; round < streams; ++round) {
-    const auto source = std::make_shared<CountingSource>();
-    const bool is_closed_early = round % 4 == 3;
+    const auto source = std::make_shared<CountingSource>(false, round % 2 == 1);
+    const bool is_closed_early = round % 8 > 5;
     std::unique_ptr<ThreadedTransport> transport;
     std::unique_ptr<StreamMachine> machine;
     {
