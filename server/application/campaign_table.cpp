@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 
 #include "server/application/campaigns.h"
 #include "server/application/column_source.h"
@@ -55,10 +56,12 @@ class CampaignSource final : public ColumnSource<v1::ReadCampaignResponse> {
     out.set_total_rows(campaign_rows_.total());
   }
 
-  std::vector<double> read(std::size_t place, std::int64_t first, std::int64_t count) override {
+  void read(std::size_t place, std::int64_t first, std::span<double> values) override {
     const TableColumn& column = window_.columns[place];
-    if (filter_) return filter_->read(column, first, count);
-    return campaign_rows_.read(column, window_.start_row + first, count);
+    const auto count = static_cast<std::int64_t>(values.size());
+    std::ranges::copy(filter_ ? filter_->read(column, first, count)
+                              : campaign_rows_.read(column, window_.start_row + first, count),
+                      values.begin());
   }
 
   CampaignRows campaign_rows_;

@@ -5,8 +5,8 @@
 #include <bit>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
-#include <vector>
 
 #include "server/application/application.h"
 #include "server/application/message_source.h"
@@ -70,11 +70,13 @@ class ColumnSource : public MessageSource<Response> {
     if (column_ == 0 || order_ == Order::kColumns) {
       run_ = std::min(longest_run(), rows_ - next_row_);
     }
-    const std::vector<double> values = read(column_, next_row_, run_);
     v1::HistoryChunk& chunk = *out.mutable_chunk();
     chunk.set_column(static_cast<int>(column_));
     chunk.set_first_row(next_row_);
-    chunk.set_values(values.data(), values.size() * sizeof(double));
+    // The values are written where they are sent from. std::string aligns its bytes for doubles.
+    const auto count = static_cast<std::size_t>(run_);
+    chunk.mutable_values()->resize(count * sizeof(double));
+    read(column_, next_row_, {reinterpret_cast<double*>(chunk.mutable_values()->data()), count});
     if (error_.code() != 0) return Step::kEnd;
     if (order_ == Order::kColumns) {
       next_row_ += run_;
@@ -87,7 +89,10 @@ class ColumnSource : public MessageSource<Response> {
   }
 
   bool is_short() const final { return rows_ <= kHistoryBlock; }
-  bool may_be_ahead() const final { return open_.has_room_for_two(); }
+  /// The client receives the schema before a thread that prepares a chunk takes a processor.
+  bool may_be_ahead() const final {
+    return (next_row_ > 0 || column_ > 0) && open_.has_room_for_two();
+  }
   google::rpc::Status error() const final { return error_; }
 
  protected:
@@ -95,8 +100,9 @@ class ColumnSource : public MessageSource<Response> {
       : columns_(columns), open_(application.open_histories) {}
 
   virtual void tell_schema(v1::HistorySchema& out) const = 0;
-  /// Returns rows [first, first + count) of the stream in the column at this place of the schema.
-  virtual std::vector<double> read(std::size_t place, std::int64_t first, std::int64_t count) = 0;
+  /// Reads rows [first, first + values.size()) of the stream in the column at this place of the
+  /// schema. A failure sets error_.
+  virtual void read(std::size_t place, std::int64_t first, std::span<double> values) = 0;
 
   std::int64_t rows_ = 0;  ///< to come in all
   google::rpc::Status error_;

@@ -4,6 +4,8 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "server/application/column_source.h"
 #include "server/application/errors.h"
@@ -70,17 +72,21 @@ class HistorySource final : public ColumnSource<v1::ReadHistoryResponse> {
     *out.mutable_input_warnings() = input_warnings_;
   }
 
-  std::vector<double> read(std::size_t place, std::int64_t first, std::int64_t count) override {
+  void read(std::size_t place, std::int64_t first, std::span<double> values) override {
     const std::int64_t column = shape_.columns[window_.columns[place]];
-    const auto level = [&](int which, std::int64_t start, std::int64_t length) {
-      std::vector<double> values(static_cast<std::size_t>(length));
-      if (!store_.read_history(column, which, start, values, limits_)) {
+    const auto read_level = [&](int level, std::int64_t start, std::span<double> out) {
+      if (!store_.read_history(column, level, start, out, limits_)) {
         error_ = history_evicted(name_);
       }
-      return values;
     };
-    if (!overview_) return level(0, window_.start_row + first, count);
-    return overview_pairs(*overview_, first / 2, count / 2, level);
+    if (!overview_) return read_level(0, window_.start_row + first, values);
+    const auto level = [&](int which, std::int64_t start, std::int64_t count) {
+      std::vector<double> out(static_cast<std::size_t>(count));
+      read_level(which, start, out);
+      return out;
+    };
+    const auto count = static_cast<std::int64_t>(values.size());
+    std::ranges::copy(overview_pairs(*overview_, first / 2, count / 2, level), values.begin());
   }
 
   Store& store_;

@@ -57,27 +57,24 @@ void StreamMachine::written(bool ok) {
 void StreamMachine::step() {
   using Step = AnyMessageSource::Step;
   Reply message;
-  if (!begin_step(message)) return;
-  while (!message) {
-    google::rpc::Status end;
-    Reply next(prototype_.New());
-    switch (next_step(*source_, *next, end)) {
-      case Step::kMessage:
-        message = std::move(next);
-        break;
-      case Step::kEnd:
-        close(end);
-        [[fallthrough]];
-      case Step::kWait:
-        if (go_idle() || !begin_step(message)) return;
+  while (begin_step(message)) {
+    if (!message) {
+      google::rpc::Status end;
+      message.reset(prototype_.New());
+      const Step next = next_step(*source_, *message, end);
+      if (next == Step::kEnd) close(end);
+      if (next == Step::kWait && go_idle()) return;
+      if (next != Step::kMessage) continue;
     }
+    const bool is_ahead = source_->may_be_ahead();
+    if (!begin_write(message, is_ahead)) return;
+    if (const auto failed = transport_.write(*message)) {
+      return finish(std::unique_lock(mutex_), *failed);
+    }
+    if (!is_ahead) return;
+    // Another thread would start later than a short message takes.
+    if (!source_->is_short()) return transport_.run_step();
   }
-  const bool is_ahead = source_->may_be_ahead();
-  if (!begin_write(message, is_ahead)) return;
-  if (const auto failed = transport_.write(*message)) {
-    return finish(std::unique_lock(mutex_), *failed);
-  }
-  if (is_ahead) transport_.run_step();
 }
 
 std::optional<StreamMachine::Clock::time_point> StreamMachine::look_at_clock(

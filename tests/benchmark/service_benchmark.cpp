@@ -278,7 +278,8 @@ std::pair<double, double> read_stream(Stub& stub, const v1::ReadHistoryRequest& 
   while (reader->Read(&part)) {
     if (first == 0) first = seconds_since(begin);
   }
-  if (!reader->Finish().ok()) throw std::runtime_error("a history broke off");
+  const grpc::Status status = reader->Finish();
+  if (!status.ok()) throw std::runtime_error("a history broke off: " + status.error_message());
   return {first, seconds_since(begin)};
 }
 
