@@ -99,8 +99,8 @@ double deepest_of(const ShearLaw<double>& law, double greatest_factor) {
   }
   const double log_viscosity = greatest_factor - laws::kRoelandsLogViscosity;
   const double temperature =
-      law.growth.vogel_reference +
-      law.growth.vogel_coefficient / (log_viscosity - law.log_vogel_prefactor);
+      law.lubricant.vogel_reference_temperature +
+      law.lubricant.vogel_temperature_coefficient / (log_viscosity - law.log_vogel_prefactor);
   const double folds =
       std::min(kMostFolds, laws::log_greatest_viscosity(law.lubricant) - log_viscosity - 1);
   const auto excess = [&](double depth) {

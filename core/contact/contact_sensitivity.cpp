@@ -142,9 +142,8 @@ ContactSensitivityModel::ContactSensitivityModel(const FlankContactModel& model)
   if (kept->roelands) {
     kept->growth[1] = constants.shear.index;
   } else {
-    kept->growth = {DualNumber(0.0), constants.shear.log_vogel_prefactor,
-                    oil.vogel_temperature_coefficient, oil.vogel_reference_temperature};
-    std::copy(oil.law_parameters.begin(), oil.law_parameters.end(), kept->growth.begin() + 4);
+    const auto& of_law = constants.shear.growth.parameters;
+    std::copy(of_law.begin(), of_law.end(), kept->growth.begin() + 1);
   }
   kept->limit_at_zero_pressure = parameters.lubricant.limiting_shear_stress_at_zero_pressure;
   kept->limit_coefficient = parameters.lubricant.limiting_shear_stress_coefficient;

@@ -71,8 +71,10 @@ bool has_covered_growth(ContactBlockTables& t, double tau_zero, double gamma) {
       fell = fell || !rises_here;
     }
     if (fell && t.monotone_factor == 0) t.monotone_factor = colder_factor;
-    colder_factor = laws::roelands_factor(
-        t.shear.log_vogel_prefactor + law.vogel_coefficient / (temperature - law.vogel_reference));
+    colder_factor =
+        laws::roelands_factor(t.shear.log_vogel_prefactor +
+                              t.shear.lubricant.vogel_temperature_coefficient /
+                                  (temperature - t.shear.lubricant.vogel_reference_temperature));
   }
   return true;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 
 #include "core/numerics/bracketed_root.h"
 #include "core/numerics/gauss_legendre.h"
@@ -118,37 +119,16 @@ void add_panel(const Law<RoelandsStress>& law, double from, double to, Moment& o
   if (law.all_derivatives) out.by_growth[1] += factor * (weighted * s * (growth + 1)).sum();
 }
 
-/// The law in dual numbers by all arguments of its growth, or by the temperature alone.
-template <int kCount>
-struct LawNumbers {
-  using Number = laws::Dual<double, kCount>;
-  GrowthLaw<Number> law;
-  Number temperature;
-
-  LawNumbers(const ShearLaw<double>& of, double at) : temperature(Number::variable(at, 0)) {
-    LubricantOf<Number> oil;
-    const auto number = [](double x, int i) {
-      return i < kCount ? Number::variable(x, i) : Number(x);
-    };
-    const Number log_prefactor = number(of.log_vogel_prefactor, 1);
-    oil.vogel_temperature_coefficient = number(of.lubricant.vogel_temperature_coefficient, 2);
-    oil.vogel_reference_temperature = number(of.lubricant.vogel_reference_temperature, 3);
-    oil.pressure_viscosity_law = of.lubricant.pressure_viscosity_law;
-    for (int k = 0; k < kMostLawParameters; ++k) {
-      oil.law_parameters[k] = number(of.lubricant.law_parameters[k], 4 + k);
-    }
-    law = laws::growth_law(oil, log_prefactor);
-  }
-};
-
+/// With derivatives by kCount arguments of the growth, the temperature the first one.
 template <int N, int kCount>
-void add_nodes(const Law<LawStress>& law, const LawNumbers<kCount>& numbers, double from, double to,
-               Moment& out) {
+void add_nodes(const Law<LawStress>& law, const GrowthLaw<laws::Dual<double, kCount>>& by_arguments,
+               double from, double to, Moment& out) {
+  using Number = laws::Dual<double, kCount>;
   const auto& rule = gauss_legendre<N>();
+  const Number temperature = Number::variable(law.growth.temperature, 0);
   for (int n = 0; n < N; ++n) {
     const double s = from + (to - from) * rule.node(n), q = std::expm1(s);
-    const auto growth = laws::pressure_growth(numbers.law, numbers.temperature,
-                                              typename LawNumbers<kCount>::Number(q / kC));
+    const Number growth = laws::pressure_growth(by_arguments, temperature, Number(q / kC));
     const double weighted = (to - from) / (kC * kC) * rule.weight(n) *
                             std::exp(law.base - out.shift + growth.value) * q * (q + 1);
     out.value += weighted;
@@ -191,16 +171,18 @@ Moment moment(const Law<LawStress>& law, double from, double to) {
   const double folds = std::abs(end - start) + 2 * (to - from);
   const int panels = static_cast<int>(
       std::clamp(std::ceil(std::max(folds / kFolds, (to - from) / kLongest)), 1.0, 64.0));
-  const auto add_all = [&](const auto& numbers) {
+  const auto add_all = [&]<int kCount>(std::integral_constant<int, kCount>) {
+    const auto by_arguments =
+        laws::by_its_parameters<laws::Dual<double, kCount>>(law.growth.law->growth);
+    const double step = (to - from) / panels;
     for (int i = 0; i < panels; ++i) {
-      const double step = (to - from) / panels;
-      add_nodes<16>(law, numbers, from + i * step, from + (i + 1) * step, out);
+      add_nodes<16>(law, by_arguments, from + i * step, from + (i + 1) * step, out);
     }
   };
   if (law.all_derivatives) {
-    add_all(LawNumbers<kGrowthArguments>(*law.growth.law, law.growth.temperature));
+    add_all(std::integral_constant<int, kGrowthArguments>());
   } else {
-    add_all(LawNumbers<1>(*law.growth.law, law.growth.temperature));
+    add_all(std::integral_constant<int, 1>());
   }
   return out;
 }

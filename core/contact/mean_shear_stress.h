@@ -28,8 +28,6 @@ laws::LogStress<Real> log_stress(const ShearLaw<Real>& law, Real temperature, Re
   return out;
 }
 
-inline constexpr int kGrowthArguments = 4 + kMostLawParameters;
-
 /// The area mean of eq 23 and how it came about.
 struct MeanShearStress {
   double log_value;           ///< ln tau_bar, Pa
@@ -39,7 +37,7 @@ struct MeanShearStress {
   bool limited_at_centre;
   double by_base;  ///< d ln tau_bar/d base of LogStress
   /// Derivatives of ln tau_bar by what the growth with pressure depends on: L and Z of Roelands's
-  /// law; T, ln eta_ref, A_1 and T_0 of eq 34, then LubricantOf::law_parameters, of the others.
+  /// law; the temperature, then GrowthLaw::parameters, of the others.
   /// Only the first one unless all_derivatives.
   std::array<double, kGrowthArguments> by_growth;
   // If all_derivatives: those of ln tau_bar by ln p_max, tau_L0 and gamma_L. The places where eq 23

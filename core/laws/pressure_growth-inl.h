@@ -13,6 +13,7 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -47,10 +48,10 @@ HWY_INLINE Real improved_yasutomi_growth(const GrowthLaw<Parameter>& law, Real t
       parameter[kGlassTemperatureRise] * logarithm(parameter[kGlassPressureFactor] * pressure + 1);
   const Real factor = exponential(parameter[kExpansivityExponent] *
                                   logarithm(parameter[kExpansivityPressureFactor] * pressure + 1));
-  const Real above_vogel = temperature - law.vogel_reference;
-  const Real above_glass = greatest(above_vogel - law.width - rise, 0);
-  return law.vogel_coefficient / (above_glass * factor + law.width) -
-         law.vogel_coefficient / above_vogel;
+  const Real above_vogel = temperature - parameter[kVogelReference];
+  const Real above_glass = greatest(above_vogel - parameter[kGlassWidth] - rise, 0);
+  return parameter[kVogelCoefficient] / (above_glass * factor + parameter[kGlassWidth]) -
+         parameter[kVogelCoefficient] / above_vogel;
 }
 
 /// A sufficient condition for pressure_growth_falls(). Above the glass transition the slope is
@@ -63,22 +64,37 @@ HWY_INLINE bool improved_yasutomi_growth_falls(const GrowthLaw<double>& law, dou
                                    -0.5 * parameter[kExpansivityExponent]);
   const double glass_rise =
       parameter[kGlassTemperatureRise] * std::log1p(parameter[kGlassPressureFactor] * pressure);
-  const double above_vogel = temperature - law.vogel_reference;
-  return above_vogel > law.width + glass_rise && above_vogel > law.width * (1 + per_root);
+  const double above_vogel = temperature - parameter[kVogelReference];
+  const double width = parameter[kGlassWidth];
+  return above_vogel > width + glass_rise && above_vogel > width * (1 + per_root);
 }
 
 /// The law of a lubricant, from ln eta_ref of eq 34 too.
 template <class Parameter>
 HWY_INLINE GrowthLaw<Parameter> growth_law(const LubricantOf<Parameter>& oil,
                                            Parameter log_prefactor) {
-  GrowthLaw<Parameter> out{oil.pressure_viscosity_law, oil.vogel_temperature_coefficient,
-                           oil.vogel_reference_temperature, Parameter(0.0), oil.law_parameters};
+  GrowthLaw<Parameter> out{oil.pressure_viscosity_law, {}};
+  std::copy(oil.law_parameters.begin(), oil.law_parameters.end(), out.parameters.begin());
+  out.parameters[kVogelCoefficient] = oil.vogel_temperature_coefficient;
+  out.parameters[kVogelReference] = oil.vogel_reference_temperature;
   switch (oil.pressure_viscosity_law) {
     case PressureViscosityLaw::kRoelands:
       break;
     case PressureViscosityLaw::kImprovedYasutomi:
-      out.width = improved_yasutomi_width(oil, log_prefactor);
+      out.parameters[kGlassWidth] = improved_yasutomi_width(oil, log_prefactor);
       break;
+  }
+  return out;
+}
+
+/// A law with derivatives by its parameters: the variables of Number from number 1 on, as far as
+/// Number has them. Number 0 is for the temperature.
+template <class Number, class Parameter>
+HWY_INLINE GrowthLaw<Number> by_its_parameters(const GrowthLaw<Parameter>& law) {
+  GrowthLaw<Number> out{law.law, {}};
+  for (int k = 0; k < kGrowthParameters; ++k) {
+    const double value = value_of(law.parameters[k]);
+    out.parameters[k] = 1 + k < Number::kVariables ? Number::variable(value, 1 + k) : Number(value);
   }
   return out;
 }

@@ -6,15 +6,26 @@
 
 namespace tribodyn {
 
+/// Parameters of a law of growth with pressure as it is evaluated. Those of the law itself are
+/// first, by their indices in LubricantOf::law_parameters.
+enum GrowthParameter {
+  kVogelCoefficient = kMostLawParameters,  ///< A_1 of eq 34 [K]
+  kVogelReference,                         ///< T_0 of eq 34 [K]
+  kGrowthParameters
+};
+
+/// In place of eta_g stands what it and eq 34 determine: C_2 of the improved Yasutomi law [K].
+inline constexpr int kGlassWidth = kGlassViscosity;
+
 /// A law of growth with pressure, ready to be evaluated: core/laws/pressure_growth-inl.h.
 template <class Parameter>
 struct GrowthLaw {
   PressureViscosityLaw law = PressureViscosityLaw::kRoelands;
-  Parameter vogel_coefficient;  ///< A_1 of eq 34 [K]
-  Parameter vogel_reference;    ///< T_0 of eq 34 [K]
-  Parameter width;              ///< C_2 of the improved Yasutomi law [K]
-  std::array<Parameter, kMostLawParameters> parameters;
+  std::array<Parameter, kGrowthParameters> parameters;
 };
+
+/// What growth depends on besides pressure: the temperature, then the parameters of the law.
+inline constexpr int kGrowthArguments = 1 + kGrowthParameters;
 
 /// What the stress of one lubricant depends on besides temperature, shear rate and pressure.
 /// Parameter is double or a dual number.

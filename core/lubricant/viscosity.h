@@ -70,4 +70,20 @@ Real reciprocal_asymptotic_of_growth(const GrowthLaw<Real>& law, const Real& tem
   return 1 / integral;
 }
 
+/// The same with derivatives: by what the growth depends on, of which there is little, then by the
+/// chain rule.
+template <int kCount>
+laws::Dual<double, kCount> reciprocal_asymptotic_of_growth(
+    const GrowthLaw<laws::Dual<double, kCount>>& law,
+    const laws::Dual<double, kCount>& temperature) {
+  using Number = laws::Dual<double, kGrowthArguments>;
+  const Number by_arguments = reciprocal_asymptotic_of_growth<Number>(
+      laws::by_its_parameters<Number>(law), Number::variable(temperature.value, 0));
+  auto out = laws::chained(by_arguments.value, by_arguments.slope[0], temperature);
+  for (int k = 0; k < kGrowthParameters; ++k) {
+    out = out + laws::chained(0.0, by_arguments.slope[1 + k], law.parameters[k]);
+  }
+  return out;
+}
+
 }  // namespace tribodyn

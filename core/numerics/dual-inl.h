@@ -20,6 +20,7 @@ namespace HWY_NAMESPACE {
 /// Real is double or Pack. Comparisons are those of the values.
 template <class Real, int kCount>
 struct Dual {
+  static constexpr int kVariables = kCount;
   Real value;
   Real slope[kCount];
 
