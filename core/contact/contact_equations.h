@@ -60,29 +60,12 @@ struct ContactConstants {
   ShearLaw<Real> shear;
 };
 
-/// ln eta_0(T) in Pa s, and its derivative by T [1/K].
-template <class Real>
-laws::WithSlope<Real> log_ambient_viscosity_and_slope(const LubricantOf<Real>& oil,
-                                                      const Real& temperature) {
-  return laws::log_vogel_viscosity(laws::logarithm(oil.vogel_viscosity_prefactor),
-                                   oil.vogel_temperature_coefficient,
-                                   oil.vogel_reference_temperature, temperature);
-}
-template <class Real>
-Real log_ambient_viscosity(const LubricantOf<Real>& oil, const Real& temperature) {
-  return log_ambient_viscosity_and_slope(oil, temperature).value;
-}
-
 /// index_of(L, alpha*) gives Z by eq 33 at the temperature where alpha* was measured.
 template <class Real, class Index>
 ContactConstants<Real> contact_constants(const ContactParametersOf<Real>& in,
                                          const ModelOptions& options, Index&& index_of) {
   const LubricantOf<Real>& oil = in.lubricant;
   const bool misprinted = options.as_published.eq31_32_logarithm;
-  const auto factor_at = [&](const Real& log_viscosity) {
-    return misprinted ? laws::roelands_factor_as_published(log_viscosity)
-                      : laws::roelands_factor(log_viscosity);
-  };
   ContactConstants<Real> out;
   out.inlet_temperature = in.bath_temperature + in.inlet_temperature_rise;  // (eq 14)
   const laws::WithSlope<Real> inlet = log_ambient_viscosity_and_slope(oil, out.inlet_temperature);
@@ -97,8 +80,7 @@ ContactConstants<Real> contact_constants(const ContactParametersOf<Real>& in,
   shear.roelands_misprinted = misprinted;
   shear.log_relaxation_time = laws::logarithm(oil.relaxation_time);
   const auto heat_density = [&](const Real& temperature) {
-    return temperature * laws::linear_density(oil.density_at_zero_kelvin,
-                                              oil.density_temperature_slope, temperature);
+    return temperature * density(oil, temperature);
   };
   const Real& reference = oil.rheology_reference_temperature;
   shear.shift_reference =
@@ -114,9 +96,9 @@ ContactConstants<Real> contact_constants(const ContactParametersOf<Real>& in,
     out.pressure_viscosity_coefficient =
         reciprocal_asymptotic_of_growth(shear.growth, out.inlet_temperature);
   } else {
-    const Real where_measured =
-        factor_at(log_ambient_viscosity(oil, oil.pressure_viscosity_temperature));
-    const Real at_inlet = factor_at(out.log_inlet_viscosity);
+    const Real where_measured = roelands_factor(
+        log_ambient_viscosity(oil, oil.pressure_viscosity_temperature), options.as_published);
+    const Real at_inlet = roelands_factor(out.log_inlet_viscosity, options.as_published);
     if (misprinted || options.pressure_viscosity_index == PressureViscosityIndex::kHoupert) {
       shear.index = laws::houpert_index(where_measured, oil.pressure_viscosity_coefficient);
       out.pressure_viscosity_coefficient =

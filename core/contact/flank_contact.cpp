@@ -90,8 +90,8 @@ FlankContactModel::FlankContactModel(const Lubricant& lubricant, const SolidPair
   }
   if (roelands) {
     for (const double temperature : {lubricant.pressure_viscosity_temperature, inlet_temperature}) {
-      if (!(roelands_factor(tribodyn::log_ambient_viscosity(lubricant, temperature),
-                            options.as_published) > 0)) {
+      if (!(roelands_factor(log_ambient_viscosity(lubricant, temperature), options.as_published) >
+            0)) {
         throw Refusal(
             "ROELANDS_FACTOR",
             "ln eta_0 + 9.67 of eq 31 is not positive: the fluid is too thin for the law");
@@ -252,55 +252,47 @@ void FlankContactModel::complete(const ContactConditions& k, ContactFigures& fig
       std::max(0.0, figures.contact_temperature - constants_.inlet_temperature - oil_rise);
 }
 
-const char* contact_status_name(ContactStatus status) {
+namespace {
+
+struct StatusText {
+  const char* name;
+  const char* sentence;
+};
+
+StatusText text_of(ContactStatus status) {
   switch (status) {
     case ContactStatus::kOk:
-      return "OK";
+      return {"OK", "solved"};
     case ContactStatus::kNoLoad:
-      return "NO_LOAD";
+      return {"NO_LOAD", "no load, no contact: every force is zero"};
     case ContactStatus::kRefusedNotFinite:
-      return "NOT_FINITE";
+      return {"NOT_FINITE", "an input of the contact is not a finite number"};
     case ContactStatus::kRefusedRadius:
-      return "RADIUS_NOT_POSITIVE";
+      return {"RADIUS_NOT_POSITIVE", "a radius of curvature is not positive"};
     case ContactStatus::kRefusedNegativeEntrainment:
-      return "NEGATIVE_ENTRAINMENT";
+      return {"NEGATIVE_ENTRAINMENT",
+              "eq 17 as published gives a negative entrainment speed for backward entrainment"};
     case ContactStatus::kRefusedUnboundedShear:
-      return "UNBOUNDED_SHEAR";
+      return {"UNBOUNDED_SHEAR",
+              "sliding without a film and without a limiting shear stress has no finite stress"};
     case ContactStatus::kRefusedNoLoadSharing:
-      return "NO_LOAD_SHARING";
+      return {"NO_LOAD_SHARING",
+              "no film load balances asperities and film (eq 41): eqs 43 and 44 as published pull "
+              "where the film ratio is above 2.2, as under the light loads of impacts, and an "
+              "ellipse from the total load can leave no root"};
     case ContactStatus::kRefusedNoTemperature:
-      return "NO_CONTACT_TEMPERATURE";
+      return {"NO_CONTACT_TEMPERATURE",
+              "no contact temperature balances heat and conduction while the density law of eq 26 "
+              "is positive"};
     case ContactStatus::kRefusedOverflow:
-      return "OVERFLOW";
+      return {"OVERFLOW", "a law left the range of double precision"};
   }
-  return "UNKNOWN";
+  return {"UNKNOWN", "unknown"};
 }
 
-const char* contact_status_sentence(ContactStatus status) {
-  switch (status) {
-    case ContactStatus::kOk:
-      return "solved";
-    case ContactStatus::kNoLoad:
-      return "no load, no contact: every force is zero";
-    case ContactStatus::kRefusedNotFinite:
-      return "an input of the contact is not a finite number";
-    case ContactStatus::kRefusedRadius:
-      return "a radius of curvature is not positive";
-    case ContactStatus::kRefusedNegativeEntrainment:
-      return "eq 17 as published gives a negative entrainment speed for backward entrainment";
-    case ContactStatus::kRefusedUnboundedShear:
-      return "sliding without a film and without a limiting shear stress has no finite stress";
-    case ContactStatus::kRefusedNoLoadSharing:
-      return "no film load balances asperities and film (eq 41): eqs 43 and 44 as published pull "
-             "where the film ratio is above 2.2, as under the light loads of impacts, and an "
-             "ellipse from the total load can leave no root";
-    case ContactStatus::kRefusedNoTemperature:
-      return "no contact temperature balances heat and conduction while the density law of eq 26 "
-             "is positive";
-    case ContactStatus::kRefusedOverflow:
-      return "a law left the range of double precision";
-  }
-  return "unknown";
-}
+}  // namespace
+
+const char* contact_status_name(ContactStatus status) { return text_of(status).name; }
+const char* contact_status_sentence(ContactStatus status) { return text_of(status).sentence; }
 
 }  // namespace tribodyn

@@ -180,7 +180,7 @@ FlankContactBatch::FlankContactBatch(const FlankContactModel& model, Instruction
   if (one_equilibrium) t.proved_temperature = kInfinity;
 
   const auto factor_at = [&](double temperature) {
-    return laws::roelands_factor(tribodyn::log_ambient_viscosity(oil, temperature));
+    return laws::roelands_factor(log_ambient_viscosity(oil, temperature));
   };
   t.hottest = std::min(t.inlet_temperature + 200, 0.9 * end_of_density);
   const AsPublished& p = options.as_published;
@@ -191,7 +191,7 @@ FlankContactBatch::FlankContactBatch(const FlankContactModel& model, Instruction
       options.hertz_load == HertzLoad::kFilmLoad && one_switch_at_most && proved &&
       (t.shear.newtonian || oil.relaxation_time > 0) && t.hottest > t.inlet_temperature + 1 &&
       std::isfinite(t.log_film) &&
-      std::isnormal(std::exp(tribodyn::log_ambient_viscosity(oil, t.inlet_temperature))) &&
+      std::isnormal(std::exp(log_ambient_viscosity(oil, t.inlet_temperature))) &&
       tabulate_ratio(instruction_set, factor_at(t.hottest), factor_at(t.inlet_temperature), t) &&
       (roelands || has_covered_growth(t, tau_zero, gamma));
   tabulate_asperities(t);
@@ -228,24 +228,38 @@ const char* FlankContactBatch::name(InstructionSet instruction_set) {
 
 namespace {
 
+/// A figure in the caller's arrays, in the reference's solution and in a block.
+struct Figure {
+  double* FlankContactBatchResults::*to;
+  double ContactSolution::*of_reference;
+  ContactLanes ContactBlockResults::*of_block;
+};
+using To = FlankContactBatchResults;
+using Reference = ContactSolution;
+using Block = ContactBlockResults;
+constexpr Figure kFigures[] = {
+    {&To::friction, &Reference::friction, &Block::friction},
+    {&To::viscous_friction, &Reference::viscous_friction, &Block::viscous_friction},
+    {&To::boundary_friction, &Reference::boundary_friction, &Block::boundary_friction},
+    {&To::contact_temperature, &Reference::contact_temperature, &Block::contact_temperature},
+    {&To::central_film_thickness, &Reference::central_film_thickness, &Block::film_thickness},
+    {&To::film_ratio, &Reference::film_ratio, &Block::film_ratio},
+    {&To::maximum_pressure, &Reference::maximum_pressure, &Block::maximum_pressure},
+    {&To::film_load, &Reference::film_load, &Block::film_load},
+    {&To::asperity_load, &Reference::asperity_load, &Block::asperity_load},
+    {&To::sliding_speed, &Reference::sliding_speed, &Block::sliding_speed},
+    {&To::shear_rate, &Reference::shear_rate, &Block::shear_rate},
+    {&To::mean_shear_stress, &Reference::mean_shear_stress, &Block::mean_shear_stress},
+    {&To::limiting_stress_area_share, &Reference::limiting_stress_area_share,
+     &Block::limited_area_share},
+};
+
 /// Contact i of the caller's arrays from the reference's solution.
 void put(const ContactSolution& s, std::size_t i, const FlankContactBatchResults& to) {
   const auto set = [i](auto* array, auto value) {
     if (array != nullptr) array[i] = value;
   };
-  set(to.friction, s.friction);
-  set(to.viscous_friction, s.viscous_friction);
-  set(to.boundary_friction, s.boundary_friction);
-  set(to.contact_temperature, s.contact_temperature);
-  set(to.central_film_thickness, s.central_film_thickness);
-  set(to.film_ratio, s.film_ratio);
-  set(to.maximum_pressure, s.maximum_pressure);
-  set(to.film_load, s.film_load);
-  set(to.asperity_load, s.asperity_load);
-  set(to.sliding_speed, s.sliding_speed);
-  set(to.shear_rate, s.shear_rate);
-  set(to.mean_shear_stress, s.mean_shear_stress);
-  set(to.limiting_stress_area_share, s.limiting_stress_area_share);
+  for (const Figure& each : kFigures) set(to.*each.to, s.*each.of_reference);
   set(to.limiting_stress_at_centre, s.limiting_stress_at_centre);
   set(to.by_reference, true);
   set(to.status, s.status);
@@ -259,22 +273,9 @@ void put(const ContactBlockResults& from, int count, Place&& place,
     if (array == nullptr) return;
     for (int n = 0; n < count; ++n) array[place(n)] = value(n);
   };
-  const auto copy = [&](double* array, const ContactLanes& lanes) {
-    set(array, [&](int n) { return lanes[n]; });
-  };
-  copy(to.friction, from.friction);
-  copy(to.viscous_friction, from.viscous_friction);
-  copy(to.boundary_friction, from.boundary_friction);
-  copy(to.contact_temperature, from.contact_temperature);
-  copy(to.central_film_thickness, from.film_thickness);
-  copy(to.film_ratio, from.film_ratio);
-  copy(to.maximum_pressure, from.maximum_pressure);
-  copy(to.film_load, from.film_load);
-  copy(to.asperity_load, from.asperity_load);
-  copy(to.sliding_speed, from.sliding_speed);
-  copy(to.shear_rate, from.shear_rate);
-  copy(to.mean_shear_stress, from.mean_shear_stress);
-  copy(to.limiting_stress_area_share, from.limited_area_share);
+  for (const Figure& each : kFigures) {
+    set(to.*each.to, [&lanes = from.*each.of_block](int n) { return lanes[n]; });
+  }
   set(to.limiting_stress_at_centre, [&](int n) { return from.limited_at_centre[n] != 0; });
   set(to.by_reference, [](int) { return false; });
   set(to.status, [](int) { return ContactStatus::kOk; });

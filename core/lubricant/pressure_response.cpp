@@ -20,7 +20,7 @@ PressureResponse::PressureResponse(const Lubricant& lubricant, const ModelOption
                        as_published_.eq31_32_logarithm;
   const double where_measured = factor_at(lubricant.pressure_viscosity_temperature);
   const double coefficient = lubricant.pressure_viscosity_coefficient;
-  index_ = has_houpert_index_ ? index_from_houpert(where_measured, coefficient)
+  index_ = has_houpert_index_ ? laws::houpert_index(where_measured, coefficient)
                               : index_from_reciprocal_asymptotic(where_measured, coefficient);
 }
 
@@ -56,7 +56,7 @@ double PressureResponse::coefficient(double temperature) const {
   }
   const double factor = factor_at(temperature);
   return has_houpert_index_ ? index_ * laws::kRoelandsPressureCoefficient * factor
-                            : reciprocal_asymptotic_coefficient(factor, index_);
+                            : laws::roelands_reciprocal_asymptotic(factor, index_);
 }
 
 }  // namespace tribodyn

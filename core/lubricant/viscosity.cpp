@@ -11,25 +11,8 @@
 
 namespace tribodyn {
 
-double log_ambient_viscosity(const Lubricant& lubricant, double temperature) {
-  return laws::log_vogel_viscosity(std::log(lubricant.vogel_viscosity_prefactor),
-                                   lubricant.vogel_temperature_coefficient,
-                                   lubricant.vogel_reference_temperature, temperature)
-      .value;
-}
-
 double ambient_viscosity(const Lubricant& lubricant, double temperature) {
   return std::exp(log_ambient_viscosity(lubricant, temperature));
-}
-
-double density(const Lubricant& lubricant, double temperature) {
-  return laws::linear_density(lubricant.density_at_zero_kelvin, lubricant.density_temperature_slope,
-                              temperature);
-}
-
-double roelands_factor(double log_ambient_viscosity, const AsPublished& as_published) {
-  return as_published.eq31_32_logarithm ? laws::roelands_factor_as_published(log_ambient_viscosity)
-                                        : laws::roelands_factor(log_ambient_viscosity);
 }
 
 double log_viscosity_under_pressure(double log_ambient_viscosity, double factor, double index,
@@ -37,10 +20,6 @@ double log_viscosity_under_pressure(double log_ambient_viscosity, double factor,
   return laws::log_under_pressure(
       log_ambient_viscosity, factor,
       std::expm1(index * std::log1p(laws::kRoelandsPressureCoefficient * pressure)));
-}
-
-double reciprocal_asymptotic_coefficient(double factor, double index) {
-  return laws::roelands_reciprocal_asymptotic(factor, index);
 }
 
 double index_from_reciprocal_asymptotic(double factor, double coefficient) {
@@ -52,7 +31,7 @@ double index_from_reciprocal_asymptotic(double factor, double coefficient) {
     return ValueAndSlope{at.value / coefficient - 1, at.slope[0] / coefficient};
   };
   if (factor > 0 && coefficient > 0) {
-    const double start = index_from_houpert(factor, coefficient);
+    const double start = laws::houpert_index(factor, coefficient);
     const double index = safeguarded_newton(excess, kLow, kHigh, start, true, 1e-9);
     if (std::abs(excess(index).value) < 1e-9) return index;
   }
@@ -60,10 +39,6 @@ double index_from_reciprocal_asymptotic(double factor, double coefficient) {
                 "no Roelands index Z in [0.05, 3] gives a pressure-viscosity coefficient of " +
                     std::to_string(coefficient * 1e9) +
                     " 1/GPa back by eq 33 (ln eta_0 + 9.67 = " + std::to_string(factor) + ")");
-}
-
-double index_from_houpert(double factor, double coefficient) {
-  return laws::houpert_index(factor, coefficient);
 }
 
 void check_greatest_viscosity(const Lubricant& lubricant, double temperature) {

@@ -7,35 +7,47 @@
 
 namespace tribodyn {
 
-/// ln eta_0(T), eq 34 (Vogel 1921). eta in Pa s, temperature in K.
+// Real is double, or a dual number for the derivatives.
+
+/// ln eta_0(T), eq 34 (Vogel 1921), and its derivative by T [1/K]. eta in Pa s, temperature in K.
 /// Valid for temperature > T_0,ref; +inf or meaningless at or below it: callers check.
-double log_ambient_viscosity(const Lubricant& lubricant, double temperature);
+template <class Real>
+laws::WithSlope<Real> log_ambient_viscosity_and_slope(const LubricantOf<Real>& oil,
+                                                      const Real& temperature) {
+  return laws::log_vogel_viscosity(laws::logarithm(oil.vogel_viscosity_prefactor),
+                                   oil.vogel_temperature_coefficient,
+                                   oil.vogel_reference_temperature, temperature);
+}
+template <class Real>
+Real log_ambient_viscosity(const LubricantOf<Real>& oil, const Real& temperature) {
+  return log_ambient_viscosity_and_slope(oil, temperature).value;
+}
 
 /// eta_0(T) [Pa s], eq 34.
 double ambient_viscosity(const Lubricant& lubricant, double temperature);
 
 /// rho(T) [kg/m3], eq 26: linear in temperature [K]. Negative beyond intercept/|slope|.
-double density(const Lubricant& lubricant, double temperature);
+template <class Real>
+Real density(const LubricantOf<Real>& oil, const Real& temperature) {
+  return laws::linear_density(oil.density_at_zero_kelvin, oil.density_temperature_slope,
+                              temperature);
+}
 
 /// The factor of eqs 31 and 32 that multiplies Z: ln eta_0 + 9.67 (Roelands 1966), or, as printed,
 /// ln(eta_0 + 9.67). Argument: ln of eta_0 in Pa s.
-double roelands_factor(double log_ambient_viscosity, const AsPublished& as_published);
+template <class Real>
+Real roelands_factor(const Real& log_ambient_viscosity, const AsPublished& as_published) {
+  return as_published.eq31_32_logarithm ? laws::roelands_factor_as_published(log_ambient_viscosity)
+                                        : laws::roelands_factor(log_ambient_viscosity);
+}
 
 /// ln eta(p) [Pa s] of eq 31 from ln eta_0, the factor above, Z and the pressure [Pa] >= 0.
 double log_viscosity_under_pressure(double log_ambient_viscosity, double factor, double index,
                                     double pressure);
 
-/// alpha* [1/Pa] of eq 33 for a Roelands fluid, the inverse of
-/// int_0^inf exp(-L((1 + cp)^Z - 1)) dp = e^L L^(-1/Z) Gamma(1/Z, L)/(Z c); relative error below
-/// 1e-13 for factor L in [0.5, 60], Z in [0.05, 3].
-double reciprocal_asymptotic_coefficient(double factor, double index);
-
 /// Z such that eq 33 gives alpha* back at the factor L (bracketed root, to machine precision).
 /// Throws Refusal PRESSURE_VISCOSITY_INDEX when no Z in [0.05, 3] does or L is not positive.
 double index_from_reciprocal_asymptotic(double factor, double coefficient);
-
-/// Z of eq 32 (Houpert 1985): alpha* / (5.1e-9 L).
-double index_from_houpert(double factor, double coefficient);
 
 /// Throws Refusal PARAMETER_OUT_OF_RANGE if the viscosity at a temperature [K] is less than e^16
 /// times below the greatest one of its law, such as that of the glass transition: the growth with

@@ -278,7 +278,7 @@ TEST(PublishedMisprints, Eqs31And32GiveAViscosityAtAGigapascal2e7TimesTooHigh) {
     AsPublished as_published;
     as_published.eq31_32_logarithm = misprint;
     const double factor = roelands_factor(log_eta, as_published);
-    const double index = index_from_houpert(factor, oil.pressure_viscosity_coefficient);
+    const double index = laws::houpert_index(factor, oil.pressure_viscosity_coefficient);
     return std::exp(log_viscosity_under_pressure(log_eta, factor, index, 1e9));
   };
   EXPECT_NEAR(std::log10(viscosity(true)), 10, 0.5);

@@ -20,7 +20,7 @@ TEST(PublishedViscosity, HoupertsIndexIsThatOfTheTextbookTable) {
     for (std::size_t i = 0; i < z.size(); ++i) {
       SCOPED_TRACE(oil.at("name").get<std::string>() + " " + std::to_string(i));
       const double factor = roelands_factor(std::log(viscosity[i]), {});
-      EXPECT_NEAR(index_from_houpert(factor, alpha[i]), z[i], tolerance);
+      EXPECT_NEAR(laws::houpert_index(factor, alpha[i]), z[i], tolerance);
     }
   }
 }
@@ -35,7 +35,7 @@ TEST(PublishedViscosity, IndexOfAnOilHardlyDependsOnTemperatureUnlessTheLogarith
     double low = 1e9, high = 0;
     for (std::size_t i = 0; i < alpha.size(); ++i) {
       const double index =
-          index_from_houpert(roelands_factor(std::log(viscosity[i]), as_published), alpha[i]);
+          laws::houpert_index(roelands_factor(std::log(viscosity[i]), as_published), alpha[i]);
       low = std::min(low, index);
       high = std::max(high, index);
     }
