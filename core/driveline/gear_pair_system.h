@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
-#include <utility>
 
-#include "core/contact/flank_contact_batch.h"
+#include "core/driveline/contact_solver.h"
 #include "core/driveline/section_state.h"
 #include "core/gear/mesh_data.h"
 #include "core/model_options.h"
@@ -74,6 +72,7 @@ struct ContactRegime {
   double load(double mesh_force) const {
     return side != 0 && loaded ? std::max(0.0, side * mesh_force) : 0;
   }
+  bool operator==(const ContactRegime&) const = default;
 };
 
 template <class Real>
@@ -82,6 +81,13 @@ struct TorquesOf {
   Real wheel = 0;   ///< T_w [N m]
 };
 using Torques = TorquesOf<double>;
+
+/// A point of the Poincare section at mesh phase 0, and the torques that hold from there on.
+struct SectionPoint {
+  MarchState state{};
+  ContactRegime regime;
+  Torques torques;
+};
 
 /// The power that comes in, which eq 30 divides by, as a torque at the pinion [N m]. In drive power
 /// comes in at the pinion: T_s. In coast (T_s < 0) it comes in at the wheel: -T_w
@@ -121,69 +127,67 @@ struct Instant : Mechanics {
 };
 
 /// The 4-DoF system of eqs 1 to 6 on the mesh functions of eqs 8 to 11, with friction (eqs 28, 29)
-/// in the loop. One instance per march: it carries the regime. Evaluation allocates nothing and
-/// throws nothing; the first refusal of a contact is kept.
+/// in the loop: a piecewise smooth system, one vector field for each contact regime. Immutable,
+/// safe for concurrent use; evaluation allocates nothing and throws nothing.
 class GearPairSystem {
  public:
-  /// Keeps references: mesh, contact and dynamics must outlive it.
-  GearPairSystem(const MeshData& mesh, const FlankContactModel& contact,
-                 const DrivelineDynamics& dynamics, const ModelOptions& options);
+  /// Keeps references: mesh and dynamics must outlive it.
+  GearPairSystem(const MeshData& mesh, const DrivelineDynamics& dynamics,
+                 const ModelOptions& options);
 
-  /// From now on the contacts of an instant are solved together, or one by one by the reference if
-  /// `contacts` is null. Together, outputs that no record holds are left out. Keeps the reference.
-  void solve_together(const FlankContactBatch* contacts);
-
-  void set_torques(const Torques& torques) { torques_ = torques; }
-  const Torques& torques() const { return torques_; }
   /// Speed of the shaft at which power comes in (input_torque()), referred to the pinion [rad/s]:
   /// phidot_s, in coast phidot_w N_g/N_p.
-  double input_speed(double pinion_shaft_speed, double wheel_speed) const {
-    return torques_.pinion < 0 ? wheel_speed * mesh_.gear_teeth() / mesh_.pinion_teeth()
-                               : pinion_shaft_speed;
+  double input_speed(const Torques& torques, double pinion_shaft_speed, double wheel_speed) const {
+    return torques.pinion < 0 ? wheel_speed * mesh_.gear_teeth() / mesh_.pinion_teeth()
+                              : pinion_shaft_speed;
   }
-  /// Table interval that the mesh phase is in; phases are continued by its straight lines.
-  void set_interval(int interval) { interval_ = interval; }
-  int interval() const { return interval_; }
-  ContactRegime regime;
 
   /// Regime that a state is in by its x and xdot.
   ContactRegime regime_of(double phase, const double* state) const;
-  /// Event functions, positive once their event has happened. 0: flanks part, or meet on the drive
-  /// side; over `length`. 1: the load ends or begins, over `force`; or flanks meet on the coast
-  /// side, over `length`.
-  std::array<double, 2> events(const MeshPhase& phase, const double* state, double length,
-                               double force) const;
-  /// Changes the regime at event 0 or 1. Returns true if the load of touching flanks begins.
-  bool change_regime(int event, const MeshPhase& phase, const double* state);
+  /// The point of the section that a state at mesh phase 0 is.
+  SectionPoint at_section(const MarchState& state, const Torques& torques) const {
+    return {state, regime_of(0, state.data()), torques};
+  }
+  /// Event functions of a regime, positive once their event has happened. 0: flanks part, or meet
+  /// on the drive side; over `length`. 1: the load ends or begins, over `force`; or flanks meet on
+  /// the coast side, over `length`.
+  std::array<double, 2> events(const MeshPhase& phase, ContactRegime regime, const double* state,
+                               double length, double force) const;
+  /// The regime after event 0 or 1 of a regime.
+  ContactRegime regime_after(int event, const MeshPhase& phase, ContactRegime regime,
+                             const double* state) const;
   /// x, mesh force and shaft torques, without friction.
-  void mechanics(double phase, const double* state, Mechanics& out) const {
-    mechanics(at_phase(phase), state, out);
+  void mechanics(double phase, ContactRegime regime, const double* state, Mechanics& out) const {
+    mechanics(at_phase(phase), regime, state, out);
   }
   template <class Real>
-  void mechanics(const MeshPhase& phase, const Real* state, MechanicsOf<Real>& out) const;
-  /// Evaluates mechanics and the friction of each loaded flank at a mesh phase [cycles]. Counts the
-  /// contacts.
-  void evaluate(double phase, const double* state, Instant& out);
+  void mechanics(const MeshPhase& phase, ContactRegime regime, const Real* state,
+                 MechanicsOf<Real>& out) const;
+  /// Evaluates mechanics and the friction of each loaded flank at a mesh phase [cycles], by the
+  /// straight lines of a table interval, continued outside it. Returns the first refusal of a
+  /// contact, kOk if there is none.
+  ContactStatus evaluate(double phase, int interval, ContactRegime regime, const double* state,
+                         ContactSolver& contacts, Instant& out) const;
   /// The conditions of a flank's contact under `load` [N] in a state; sets its sliding and arms.
   ContactConditions contact_conditions(const FlankKinematics& flank, double load,
                                        const double* state, FlankMotion& motion) const;
   /// d state / d phase of time and the seven states of motion.
-  void motion(const double* state, const Mechanics& at, double* derivative) const {
-    motion(state, at, torques_, derivative);
-  }
-  /// The same under other torques.
   template <class Real>
   void motion(const Real* state, const MechanicsOf<Real>& at, const TorquesOf<Real>& torques,
               Real* derivative) const;
-  /// d state / d phase of the first kMarchComponents at an instant; with `record` also of the
-  /// integrals of RecordComponent.
-  void derivative(const double* state, const Instant& at, bool record, double* derivative) const;
+  /// d state / d phase of the first kMarchComponents at an instant.
+  void derivative(const double* state, const Instant& at, const Torques& torques,
+                  double* derivative) const;
+  /// The same of all kRecordComponents.
+  void record_derivative(const double* state, const Instant& at, ContactRegime regime,
+                         const Torques& torques, double* derivative) const;
   /// x and mesh force without friction: for events.
-  void kinematics(double phase, const double* state, Mechanics& out) const {
-    kinematics(at_phase(phase), state, out);
+  void kinematics(double phase, ContactRegime regime, const double* state, Mechanics& out) const {
+    kinematics(at_phase(phase), regime, state, out);
   }
   template <class Real>
-  void kinematics(const MeshPhase& phase, const Real* state, MechanicsOf<Real>& out) const;
+  void kinematics(const MeshPhase& phase, ContactRegime regime, const Real* state,
+                  MechanicsOf<Real>& out) const;
   /// dR_g/d(mesh approach) [-].
   double gear_radius_by_approach(const MeshPhase& phase, double approach) const {
     return lag_per_approach_ * mesh_.gear_radius_by_lag(phase, lag_per_approach_ * approach);
@@ -195,44 +199,25 @@ class GearPairSystem {
   void to_march(const SectionState& section, double* state) const;
   SectionState to_section(const double* state) const;
   /// Kinetic and elastic energy [J].
-  double stored_energy(double phase, const double* state) const;
+  double stored_energy(double phase, ContactRegime regime, const double* state) const;
 
   const MeshData& mesh() const { return mesh_; }
   const DrivelineDynamics& dynamics() const { return dynamics_; }
-  const FlankContactModel& contact_model() const { return contact_; }
   const ModelOptions& options() const { return options_; }
-  long contact_solutions() const { return contact_solutions_; }
-  /// Counts contacts of this system that were solved elsewhere.
-  void count_contacts(long solved) { contact_solutions_ += solved; }
-  void refuse(ContactStatus status) {
-    if (refusal_ == ContactStatus::kOk) refusal_ = status;
-  }
-  /// The first refusal since the last take_refusal(); kOk if there is none.
-  ContactStatus refusal() const { return refusal_; }
-  ContactStatus take_refusal() { return std::exchange(refusal_, ContactStatus::kOk); }
 
  private:
-  void solve_contacts(const std::array<ContactConditions, kFlankPairs>& conditions, Instant& out);
-
   const MeshData& mesh_;
-  const FlankContactModel& contact_;
-  const FlankContactBatch* together_ = nullptr;
-  std::optional<ContactGeometries> geometries_;
   const DrivelineDynamics& dynamics_;
   ModelOptions options_;
-  Torques torques_;
   struct Inverse {
     double pinion_shaft_inertia, pinion_inertia, gear_inertia, wheel_inertia;
   } inverse_;
   double lag_per_approach_;  // of N_g phi_g behind N_p phi_p [rad/m]
   double cycle_angle_;
-  int interval_ = 0;
-  long contact_solutions_ = 0;
-  ContactStatus refusal_ = ContactStatus::kOk;
 };
 
 template <class Real>
-void GearPairSystem::kinematics(const MeshPhase& phase, const Real* y,
+void GearPairSystem::kinematics(const MeshPhase& phase, ContactRegime regime, const Real* y,
                                 MechanicsOf<Real>& out) const {
   // N_g phi_g = N_p phi_p - N_g (mesh approach)/R_g0, because R_g0 N_p = R_p0 N_g.
   out.mesh = mesh_.functions(phase, lag_per_approach_ * y[kMeshApproach]);
@@ -252,9 +237,9 @@ void GearPairSystem::kinematics(const MeshPhase& phase, const Real* y,
 }
 
 template <class Real>
-void GearPairSystem::mechanics(const MeshPhase& phase, const Real* y,
+void GearPairSystem::mechanics(const MeshPhase& phase, ContactRegime regime, const Real* y,
                                MechanicsOf<Real>& out) const {
-  kinematics(phase, y, out);
+  kinematics(phase, regime, y, out);
   const DrivelineDynamics& d = dynamics_;
   out.pinion_shaft_torque = d.pinion_shaft_stiffness * y[kPinionShaftTwist] +
                             d.pinion_shaft_damping * (y[kPinionShaftSpeed] - y[kPinionSpeed]);

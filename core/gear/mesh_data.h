@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -139,6 +140,10 @@ class MeshData {
   double series_reach() const { return reach_; }
 
   int intervals() const { return intervals_; }  ///< of the tables per mesh cycle
+  /// The interval that a phase in [0, 1] cycles is in.
+  int interval_at(double phase) const {
+    return std::clamp(static_cast<int>(phase * intervals_), 0, intervals_ - 1);
+  }
   /// The pairs at `phase` in [0, 1] cycles, by the straight line of `interval` (continued outside
   /// it).
   void flanks(int interval, double phase, std::array<FlankKinematics, kFlankPairs>& out) const;

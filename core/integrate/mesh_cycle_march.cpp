@@ -4,14 +4,14 @@
 
 namespace tribodyn {
 
-MarchScales march_scales(const GearPairSystem& system, double mean_pinion_speed) {
+MarchScales march_scales(const GearPairSystem& system, const Torques& torques,
+                         double mean_pinion_speed) {
   const MeshData& mesh = system.mesh();
   const DrivelineDynamics& d = system.dynamics();
   const double r_p = mesh.mean_pinion_contact_radius(), r_g = mesh.mean_gear_contact_radius();
   const double ratio = r_p / r_g;
   MarchScales s{};
-  s.torque =
-      std::max({std::abs(system.torques().pinion), ratio * std::abs(system.torques().wheel), 0.1});
+  s.torque = std::max({std::abs(torques.pinion), ratio * std::abs(torques.wheel), 0.1});
   s.length = s.torque / (r_p * mesh.mean_mesh_stiffness());
   const double compliance = r_p * r_p / d.pinion_inertia + r_g * r_g / d.gear_inertia;
   s.speed = s.length * std::sqrt(mesh.mean_mesh_stiffness() * compliance) / r_p;
@@ -55,15 +55,15 @@ void throw_if_refused(ContactStatus status) {
   throw Refusal(contact_status_name(status), contact_status_sentence(status));
 }
 
-void throw_if_refused(const GearPairSystem& system) { throw_if_refused(system.refusal()); }
-
-void march_mesh_cycle(GearPairSystem& system, const MarchScales& scales,
-                      const MarchOptions& options, MarchState& state, SolverWork& work) {
-  PhaseSystem<false> phases(system, scales);
+void march_mesh_cycle(const GearPairSystem& system, const MarchScales& scales,
+                      const MarchOptions& options, ContactSolver& contacts, SectionPoint& at,
+                      SolverWork& work) {
+  PhaseSystem<false> phases(system, at.torques, scales, at.regime, contacts);
   DormandPrinceWithEvents<PhaseSystem<false>> march(phases, options);
-  state[kTime] = state[kLossWork] = state[kLossShareSquared] = 0;
+  at.state[kTime] = at.state[kLossWork] = at.state[kLossShareSquared] = 0;
   double phase = 0;
-  march.run(phase, state, 1.0);
+  march.run(phase, at.state, 1.0);
+  at.regime = phases.regime();
   work += march.work();
   ++work.mesh_cycles;
 }

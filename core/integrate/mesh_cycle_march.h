@@ -22,7 +22,8 @@ struct MarchScales {
   double of(const MeshData& mesh, int component) const;
 };
 
-MarchScales march_scales(const GearPairSystem& system, double mean_pinion_speed);
+MarchScales march_scales(const GearPairSystem& system, const Torques& torques,
+                         double mean_pinion_speed);
 
 /// Opening (or closing) of the gap.
 struct GapEvent {
@@ -32,7 +33,6 @@ struct GapEvent {
 };
 
 void throw_if_refused(ContactStatus status);
-void throw_if_refused(const GearPairSystem& system);
 
 /// The gear pair as DormandPrinceWithEvents sees it, over progress through a mesh cycle in [0, 1]:
 /// mesh phase, but stretched where a flank pair takes or gives up its load (GradedPhase). kRecord
@@ -45,18 +45,22 @@ class PhaseSystem {
   static constexpr int kEvents = 2;
   using State = std::array<double, kSize>;
 
-  PhaseSystem(GearPairSystem& system, const MarchScales& scales)
-      : system_(system), scales_(scales) {
+  /// From mesh phase 0 in a regime. Keeps the references.
+  PhaseSystem(const GearPairSystem& system, const Torques& torques, const MarchScales& scales,
+              ContactRegime regime, ContactSolver& contacts)
+      : system_(system), torques_(torques), scales_(scales), contacts_(contacts), regime_(regime) {
     for (int i = 0; i < kSize; ++i) {
       scale_[i] = scales.of(system.mesh(), i);
     }
-    system_.set_interval(0);
     piece_ = GradedPhase(0, 0, next_breakpoint(0), takes_load(), gives_load());
   }
 
   /// Where the march is in the mesh cycle [cycles], and back; of the piece that it is in.
   double phase(double progress) const { return piece_.phase(progress); }
   double progress(double phase) const { return piece_.progress(phase); }
+  ContactRegime regime() const { return regime_; }
+  /// Of the mesh tables.
+  int interval() const { return interval_; }
 
   void derivative(double progress, const State& y, State& dy) {
     constexpr double kNoRate = std::numeric_limits<double>::quiet_NaN();  // fails the step
@@ -67,12 +71,15 @@ class PhaseSystem {
       dy.fill(kNoRate);
       return;
     }
-    system_.evaluate(phase(progress), y.data(), instant_);
-    system_.derivative(y.data(), instant_, kRecord, dy.data());
+    refusal_ = system_.evaluate(phase(progress), interval_, regime_, y.data(), contacts_, instant_);
+    if constexpr (kRecord) {
+      system_.record_derivative(y.data(), instant_, regime_, torques_, dy.data());
+    } else {
+      system_.derivative(y.data(), instant_, torques_, dy.data());
+    }
     const double slope = piece_.slope(progress);
     for (double& rate : dy) rate *= slope;
     // A refused contact fails the step: the wild stages of one that is too long mean nothing.
-    refusal_ = system_.take_refusal();
     if (refusal_ != ContactStatus::kOk) dy.fill(kNoRate);
   }
   void on_no_step() const {
@@ -94,60 +101,57 @@ class PhaseSystem {
   }
 
   void events(double progress, const State& y, std::array<double, kEvents>& g) const {
-    g = system_.events(system_.at_phase(phase(progress)), y.data(), scales_.length,
+    g = system_.events(system_.at_phase(phase(progress)), regime_, y.data(), scales_.length,
                        scales_.torque / system_.mesh().mean_pinion_contact_radius());
   }
 
   void on_event(int index, double progress, const State& y) {
     const double at_phase = phase(progress);
-    const bool load_begins = change_regime(index, at_phase, y);
+    const ContactRegime before = regime_;
+    regime_ = system_.regime_after(index, system_.at_phase(at_phase), before, y.data());
+    if (gap_events != nullptr && (before.side == 0) != (regime_.side == 0)) {
+      gap_events->push_back({at_phase, y[kTime], regime_.side == 0});
+    }
+    const bool load_begins = regime_.side == before.side && regime_.loaded;  // from zero
     piece_ = GradedPhase(progress, at_phase, next_breakpoint(progress), load_begins, gives_load());
   }
 
   double next_breakpoint(double) const {
-    return static_cast<double>(system_.interval() + 1) / system_.mesh().intervals();
+    return static_cast<double>(interval_ + 1) / system_.mesh().intervals();
   }
   void on_breakpoint(double progress) {
-    system_.set_interval(system_.interval() + 1);
+    ++interval_;
     piece_ = GradedPhase(progress, progress, next_breakpoint(progress), takes_load(), gives_load());
   }
   double scale(int i) const { return scale_[i]; }
   /// The load of all ends where the event is, like a power: friction goes like W^0.74 there.
-  bool corner_at(int) const { return system_.regime.loaded; }
+  bool corner_at(int) const { return regime_.loaded; }
 
   std::vector<GapEvent>* gap_events = nullptr;
 
  private:
-  /// Returns true if the load begins here, from zero.
-  bool change_regime(int index, double at_phase, const State& y) {
-    const int before = system_.regime.side;
-    const bool load_begins = system_.change_regime(index, system_.at_phase(at_phase), y.data());
-    const int side = system_.regime.side;
-    if (gap_events != nullptr && (before == 0) != (side == 0)) {
-      gap_events->push_back({at_phase, y[kTime], side == 0});
-    }
-    return load_begins;
-  }
-
   bool takes_load() const { return share_is_zero(0); }
   bool gives_load() const { return share_is_zero(1); }
   /// Whether a loaded pair has no load at that end (0 or 1) of the interval but has inside.
   bool share_is_zero(int end) const {
-    if (!system_.regime.loaded) return false;
+    if (!regime_.loaded) return false;
     constexpr double kNothing = 1e-12;
-    const int interval = system_.interval();
     const double count = system_.mesh().intervals();
     std::array<FlankKinematics, kFlankPairs> at_end, inside;
-    system_.mesh().flanks(interval, (interval + end) / count, at_end);
-    system_.mesh().flanks(interval, (interval + 0.5) / count, inside);
+    system_.mesh().flanks(interval_, (interval_ + end) / count, at_end);
+    system_.mesh().flanks(interval_, (interval_ + 0.5) / count, inside);
     for (int k = 0; k < kFlankPairs; ++k) {
       if (at_end[k].load_share <= kNothing && inside[k].load_share > kNothing) return true;
     }
     return false;
   }
 
-  GearPairSystem& system_;
+  const GearPairSystem& system_;
+  Torques torques_;
   MarchScales scales_;
+  ContactSolver& contacts_;
+  ContactRegime regime_;
+  int interval_ = 0;
   State scale_;
   GradedPhase piece_;
   double pinion_speed_ = 0, shaft_speed_ = 0;   ///< in the last evaluation
@@ -155,10 +159,11 @@ class PhaseSystem {
   Instant instant_;
 };
 
-/// Marches one mesh cycle from phase 0; time and work start from zero. Adds to `work`.
-/// Throws Refusal NO_FORWARD_ROTATION when the pinion comes to a stop, and the name of a contact's
-/// refusal when one is met.
-void march_mesh_cycle(GearPairSystem& system, const MarchScales& scales,
-                      const MarchOptions& options, MarchState& state, SolverWork& work);
+/// Marches one mesh cycle on from a point of the section; time and work start from zero. Adds to
+/// `work`. Throws Refusal NO_FORWARD_ROTATION when the pinion comes to a stop, and the name of a
+/// contact's refusal when one is met.
+void march_mesh_cycle(const GearPairSystem& system, const MarchScales& scales,
+                      const MarchOptions& options, ContactSolver& contacts, SectionPoint& at,
+                      SolverWork& work);
 
 }  // namespace tribodyn

@@ -11,8 +11,7 @@ double cycle_of(const OrbitPiece& piece) { return std::floor(piece.phase + 1e-9)
 
 /// Whether a piece starts with the contacts that the one before ends with.
 bool goes_on(const OrbitPiece& before, const OrbitPiece& piece) {
-  return before.regime.side == piece.regime.side && before.regime.loaded == piece.regime.loaded &&
-         cycle_of(piece) == std::floor(piece.phase - 1e-9);
+  return before.regime == piece.regime && cycle_of(piece) == std::floor(piece.phase - 1e-9);
 }
 
 }  // namespace
@@ -33,9 +32,7 @@ const std::array<FlankKinematics, kFlankPairs>& flanks_of(
     std::array<FlankKinematics, kFlankPairs>& off_grid) {
   if (piece.node >= 0) return grid.flanks(piece.node + part);
   const double inside = std::min(piece.phase + 0.5 * part * piece.length - cycle_of(piece), 1.0);
-  const int interval =
-      std::clamp(static_cast<int>(inside * mesh.intervals()), 0, mesh.intervals() - 1);
-  mesh.flanks(interval, inside, off_grid);
+  mesh.flanks(mesh.interval_at(inside), inside, off_grid);
   return off_grid;
 }
 

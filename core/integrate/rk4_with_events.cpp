@@ -35,7 +35,7 @@ SensitivityConstants driveline_constants(const GearPairSystem& system) {
   return c;
 }
 
-Rk4WithEvents::Rk4WithEvents(GearPairSystem& system, const MarchScales& scales,
+Rk4WithEvents::Rk4WithEvents(const GearPairSystem& system, const MarchScales& scales,
                              const MeshGrid& grid, int period, bool solve_wheel_torque,
                              double event_tolerance, InstructionSet instruction_set)
     : system_(system),
@@ -54,7 +54,7 @@ SensitivityStage Rk4WithEvents::sensitivity_stage(const MarchState& y, const Mec
                                                   const FrictionArms& friction,
                                                   const Rates& rate) const {
   const MeshFunctions& m = at.mesh;
-  const ContactRegime& r = system_.regime;
+  const ContactRegime r = regime_;
   const double load_by_force = r.load(at.mesh_force) > 0 ? r.side : 0;
   SensitivityStage out;
   out.relative_radius = m.pinion_contact_radius - m.static_transmission_error_slope;
@@ -78,27 +78,27 @@ SensitivityStage Rk4WithEvents::sensitivity_stage(const MarchState& y, const Mec
 
 Rk4WithEvents::Rates Rk4WithEvents::rates(const FrictionArms& friction, const MeshPhase& phase,
                                           const MarchState& y, Mechanics& at) const {
-  system_.mechanics(phase, y.data(), at);
-  const double load = system_.regime.load(at.mesh_force);
+  system_.mechanics(phase, regime_, y.data(), at);
+  const double load = regime_.load(at.mesh_force);
   at.pinion_friction_torque = friction.pinion * load;
   at.gear_friction_torque = friction.gear * load;
   Rates out{};
-  system_.motion(y.data(), at, out.data());
+  system_.motion(y.data(), at, torques_, out.data());
   return out;
 }
 
 void Rk4WithEvents::change_regime(int event, const FrictionArms& friction, const MeshPhase& phase,
                                   const MarchState& y, Sensitivity* s) {
-  if (s == nullptr) {
-    system_.change_regime(event, phase, y.data());
+  const ContactRegime next = system_.regime_after(event, phase, regime_, y.data());
+  if (s == nullptr || next.side == regime_.side) {
+    regime_ = next;
     return;
   }
-  const int side = system_.regime.side;
   Mechanics at;
   const Rates before = rates(friction, phase, y, at);
-  system_.change_regime(event, phase, y.data());
+  regime_ = next;
   const double error_slope = at.transmission_velocity * before[kTime];  // dx/dphase
-  if (system_.regime.side == side || error_slope == 0) return;
+  if (error_slope == 0) return;
   const Rates after = rates(friction, phase, y, at);
   evaluations_ += 2;
   // dx/d(mesh approach) = R_g/R_g0 (eq 6); x depends on no other state.
@@ -138,7 +138,7 @@ MarchState Rk4WithEvents::middle(const MarchState& from, const MarchState& to, d
 }
 
 Rk4WithEvents::Events Rk4WithEvents::events(const MeshPhase& phase, const MarchState& y) const {
-  return system_.events(phase, y.data(), scales_.length,
+  return system_.events(phase, regime_, y.data(), scales_.length,
                         scales_.torque / system_.mesh().mean_pinion_contact_radius());
 }
 
@@ -231,14 +231,17 @@ double Rk4WithEvents::locate(FrozenFriction& friction, int index, double first, 
   return x;
 }
 
-bool Rk4WithEvents::run(FrozenFriction& friction, bool bilateral_contact, MarchState& y,
-                        Sensitivity* s, std::vector<OrbitPiece>* pieces) {
+bool Rk4WithEvents::run(const Torques& torques, FrozenFriction& friction, bool bilateral_contact,
+                        MarchState& y, Sensitivity* s, std::vector<OrbitPiece>* pieces) {
   constexpr int kMostPieces = 20;  // of one step
   int index = 0;                   // of an event
   if (pieces != nullptr) {
     pieces->clear();
     pieces->reserve(static_cast<std::size_t>(grid_.steps()) * static_cast<std::size_t>(period_));
   }
+  torques_ = torques;
+  regime_ = bilateral_contact ? ContactRegime{torques.pinion >= 0 ? 1 : -1, true}
+                              : system_.regime_of(0, y.data());
   y[kTime] = y[kLossWork] = y[kLossShareSquared] = 0;
   store_stages_ = s != nullptr;
   if (s != nullptr) {
@@ -309,7 +312,7 @@ bool Rk4WithEvents::run(FrozenFriction& friction, bool bilateral_contact, MarchS
       ++taken_;
       if (pieces != nullptr) {
         const bool on_grid = piece == 0 && !happens;
-        pieces->push_back({phase, h, on_grid ? node : -1, system_.regime, y, half, to});
+        pieces->push_back({phase, h, on_grid ? node : -1, regime_, y, half, to});
       }
       y = to;
       if (s != nullptr) advance_sensitivity(instruction_set_, constants_, stages_, h, *s);

@@ -31,14 +31,16 @@ class Rk4WithEvents {
  public:
   /// The grid's steps in each of `period` mesh cycles. Events are located to `event_tolerance`, of
   /// the scales of length and force. Keeps the references.
-  Rk4WithEvents(GearPairSystem& system, const MarchScales& scales, const MeshGrid& grid, int period,
-                bool solve_wheel_torque, double event_tolerance, InstructionSet instruction_set);
+  Rk4WithEvents(const GearPairSystem& system, const MarchScales& scales, const MeshGrid& grid,
+                int period, bool solve_wheel_torque, double event_tolerance,
+                InstructionSet instruction_set);
 
-  /// Integrates one period from `state`, in the system's regime, or with `bilateral_contact` in
-  /// contact of one side whatever the sign of the mesh force. Time and works start from zero.
-  /// Returns false if the pinion stops, events do not end, or a number is not finite.
-  bool run(FrozenFriction& friction, bool bilateral_contact, MarchState& state,
-           Sensitivity* sensitivity, std::vector<OrbitPiece>* pieces);
+  /// Integrates one period from `state`, in the regime that the state is in, or with
+  /// `bilateral_contact` in contact of the side that the pinion torque presses, whatever the sign
+  /// of the mesh force. Time and works start from zero. Returns false if the pinion stops, events
+  /// do not end, or a number is not finite.
+  bool run(const Torques& torques, FrozenFriction& friction, bool bilateral_contact,
+           MarchState& state, Sensitivity* sensitivity, std::vector<OrbitPiece>* pieces);
 
   long evaluations() const { return evaluations_; }
   long steps() const { return taken_; }
@@ -54,7 +56,7 @@ class Rk4WithEvents {
   };
   SensitivityStage sensitivity_stage(const MarchState& y, const Mechanics& at,
                                      const FrictionArms& friction, const Rates& rate) const;
-  /// d state / d phase at a mesh phase, in the system's regime; `at`: the mechanics there.
+  /// d state / d phase at a mesh phase; `at`: the mechanics there.
   Rates rates(const FrictionArms& friction, const MeshPhase& phase, const MarchState& y,
               Mechanics& at) const;
   void step(FrozenFriction& friction, const Span& span, const MarchState& y, MarchState& to);
@@ -67,7 +69,7 @@ class Rk4WithEvents {
   MarchState middle(const MarchState& from, const MarchState& to, double h) const;
   Events events(const MeshPhase& phase, const MarchState& y) const;
 
-  GearPairSystem& system_;
+  const GearPairSystem& system_;
   const MarchScales& scales_;
   const MeshGrid& grid_;
   int period_;
@@ -75,6 +77,8 @@ class Rk4WithEvents {
   InstructionSet instruction_set_;
   SensitivityConstants constants_;
   long evaluations_ = 0, taken_ = 0, events_ = 0;
+  Torques torques_;
+  ContactRegime regime_;  // at the phase reached
   // Of the last step.
   Rates first_rate_{}, last_rate_{};
   bool store_stages_ = false;

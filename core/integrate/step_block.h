@@ -32,7 +32,8 @@ struct CycleFriction {
 
 /// The steps of a mesh cycle side by side: each starts from a state of its own.
 struct StepBlock {
-  const GearPairSystem& system;  ///< its torques and constants
+  const GearPairSystem& system;
+  const Torques& torques;
   const MeshGrid& grid;
   int side;  ///< on which the flanks stay together, whatever the force
   bool solve_wheel_torque;

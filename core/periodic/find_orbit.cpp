@@ -46,7 +46,7 @@ bool is_half_as_long(const PeriodicProblem& problem, const PeriodicOrbit& orbit)
   const auto half = std::find_if(orbit.pieces.begin(), orbit.pieces.end(), [&](const auto& piece) {
     return piece.phase >= 0.5 * orbit.period - 1e-9;
   });
-  const MarchScales scales = march_scales(problem.system, problem.mean_pinion_speed);
+  const MarchScales scales = march_scales(problem.system, orbit.torques, problem.mean_pinion_speed);
   double difference = 0;
   for (int i = kPinionShaftTwist; i <= kWheelSpeed; ++i) {
     difference = std::max(difference, std::abs(half->start[i] - orbit.pieces.front().start[i]) /
@@ -61,8 +61,8 @@ class GridRefinement {
  public:
   /// `cycles_left`: mesh cycles that may be integrated; reduced also where an orbit is known
   /// already, so that results do not depend on the cache. Keeps the references.
-  GridRefinement(const PeriodicProblem& problem, const OrbitSearch& search, OrbitSolver& solver,
-                 SolverWork& work, int& cycles_left)
+  GridRefinement(const PeriodicProblem& problem, const OrbitSearch& search, const Torques& torques,
+                 OrbitSolver& solver, SolverWork& work, int& cycles_left)
       : problem_(problem),
         system_(problem.system),
         search_(search),
@@ -74,7 +74,7 @@ class GridRefinement {
     options_.bilateral_contact = search.try_contact_first;
     options_.share_of_change = 0.3;
     origin_.state = search.start;
-    origin_.torques = system_.torques();
+    origin_.torques = torques;
     origin_.period = search.period;
   }
 
@@ -130,22 +130,20 @@ class GridRefinement {
   /// Whether an orbit of twice the period is near.
   bool doubles() const { return doubles_; }
 
-  const Torques& torques() const { return orbit_.torques; }
-
-  /// A state beside the orbit that repels, along the eigenvector of the multiplier nearest to -1:
+  /// A point beside the orbit that repels, along the eigenvector of the multiplier nearest to -1:
   /// off by half of the mean mesh deflection, because from nearer hundreds of cycles may lead back.
   /// An orbit without contact loss is left by enough to part the flanks: until then the motion is
   /// linear, and leaves no faster than the multiplier.
-  MarchState beside_repelling() const {
+  SectionPoint beside_repelling() const {
     const double off = orbit_.contact_loss ? 0.5 : 1.2;
-    const MarchScales scales = march_scales(system_, problem_.mean_pinion_speed);
+    const MarchScales scales = march_scales(system_, orbit_.torques, problem_.mean_pinion_speed);
     const auto direction = orbit_.jacobian->flip_direction();
     const double share = off / std::max(std::abs(direction(kMeshApproach - 1)), 0.5);
     MarchState out = orbit_.pieces.front().start;
     for (int i = kPinionShaftTwist; i <= kWheelSpeed; ++i) {
       out[i] += share * direction(i - 1) * scales.of(system_.mesh(), i);
     }
-    return out;
+    return system_.at_section(out, orbit_.torques);
   }
 
  private:
@@ -193,7 +191,7 @@ class GridRefinement {
     orbit_ = *fits;
     options_.tolerance = problem_.tolerance - doubt(*fits);
     if (!solver_.solve(grid, options_, orbit_)) {
-      is_over_ = system_.take_refusal() != ContactStatus::kOk;
+      is_over_ = problem_.tally.take_refusal() != ContactStatus::kOk;
       return std::nullopt;
     }
     const bool is_alike = options_.bilateral_contact ? orbit_.least_pressing_force >= 0
@@ -227,8 +225,8 @@ class GridRefinement {
     if (found) return true;
     // An orbit of a coarser grid that is lost is near a fold: some grids have it, others do not.
     failures_ += coarser_.is_possible() ? 2 : 1;
-    is_over_ = system_.take_refusal() != ContactStatus::kOk || !search_.allow_transient_march ||
-               failures_ >= kMostFailures;
+    is_over_ = problem_.tally.take_refusal() != ContactStatus::kOk ||
+               !search_.allow_transient_march || failures_ >= kMostFailures;
     coarser_.clear();
     return false;
   }
@@ -245,7 +243,7 @@ class GridRefinement {
       if (!has_few_steps) doubtful_tension_ /= 4;
       return true;
     }
-    const bool is_refused = system_.take_refusal() != ContactStatus::kOk;
+    const bool is_refused = problem_.tally.take_refusal() != ContactStatus::kOk;
     is_in_tension_ = has_few_steps;
     if (has_few_steps && (!solved || orbit_.least_pressing_force > -kDoubtOfFewSteps)) return false;
     is_over_ = is_refused;
@@ -260,7 +258,7 @@ class GridRefinement {
   bool solve_with_backlash(const MeshGrid& grid) {
     if (std::exchange(is_near_, false)) {
       if (solver_.solve(grid, options_, orbit_)) return true;
-      is_over_ = system_.take_refusal() != ContactStatus::kOk;
+      is_over_ = problem_.tally.take_refusal() != ContactStatus::kOk;
       if (is_over_) return false;
     }
     start_tapping(grid);
@@ -271,8 +269,7 @@ class GridRefinement {
   /// equilibrium they would be thrown far into the backlash, and so light a load takes hundreds of
   /// mesh cycles to bring them back.
   void start_tapping(const MeshGrid& grid) {
-    system_.set_torques(origin_.torques);
-    const auto start = tapping_start(system_, grid, problem_.mean_pinion_speed);
+    const auto start = tapping_start(system_, origin_.torques, grid, problem_.mean_pinion_speed);
     if (!start) return;
     origin_.state = *start;
     is_tapping_ = true;
@@ -285,7 +282,7 @@ class GridRefinement {
     for (const int cycles : {is_tapping_ ? 0 : search_.few_cycles, search_.first_cycles}) {
       if (!coarser_.is_possible()) cycles_left_ -= cycles * search_.period;
       if (cycles_left_ < 0) {
-        system_.take_refusal();
+        problem_.tally.take_refusal();
         is_over_ = true;
         return false;
       }
@@ -358,20 +355,15 @@ class GridRefinement {
     MarchOptions march;
     march.relative_tolerance = 1e-8;
     march.interrupted = problem_.interrupted;
-    system_.set_torques(orbit_.torques);
-    system_.solve_together(&problem_.contacts);
     try {
-      orbit_.multiplier_with_friction =
-          marched_multiplier(problem_, orbit_.pieces.front().start, orbit_.period, march, work_);
-    } catch (const Refusal&) {
-      system_.take_refusal();
+      orbit_.multiplier_with_friction = marched_multiplier(problem_, orbit_, march, work_);
+    } catch (const Refusal&) {  // then the march does not decide
     }
-    system_.solve_together(nullptr);
     return orbit_.multiplier_with_friction.has_value();
   }
 
   const PeriodicProblem& problem_;
-  GearPairSystem& system_;
+  const GearPairSystem& system_;
   const OrbitSearch& search_;
   OrbitSolver& solver_;
   SolverWork& work_;
@@ -405,27 +397,24 @@ bool oscillates_too_often(double mesh_oscillations) {
 }
 
 std::optional<PeriodicOrbit> find_orbit(const PeriodicProblem& problem, const OrbitSearch& search,
-                                        SolverWork& work,
-                                        std::optional<AperiodicMotion>& aperiodic) {
+                                        SolverWork& work, std::optional<SectionPoint>& aperiodic) {
   constexpr int kLongestPeriod = 4;
   OrbitSearch next = search;
   int cycles_left = search.maximum_mesh_cycles;
   OrbitSolver solver(problem, work);
-  const Torques torques = problem.system.torques();
-  std::optional<AperiodicMotion> beside;
+  std::optional<SectionPoint> beside;
   for (bool has_marched = false;; has_marched = true) {
-    problem.system.set_torques(torques);
-    const auto new_refinement = [&] {
-      return GridRefinement(problem, next, solver, work, cycles_left);
+    const auto refinement_from = [&](const Torques& torques) {
+      return GridRefinement(problem, next, torques, solver, work, cycles_left);
     };
-    GridRefinement refinement = new_refinement();
+    GridRefinement refinement = refinement_from(problem.torques);
     auto found = refinement.refine();
     const bool repels = refinement.repels();
     while (found && next.period % 2 == 0 && is_half_as_long(problem, *found)) {
       next.period /= 2;
       next.start = found->state;
       next.few_cycles = next.first_cycles = 1;
-      auto shorter = new_refinement().refine();
+      auto shorter = refinement_from(found->torques).refine();
       if (!shorter) break;
       found = std::move(shorter);
     }
@@ -439,8 +428,8 @@ std::optional<PeriodicOrbit> find_orbit(const PeriodicProblem& problem, const Or
     if (repels) {
       next.period *= 2;
       if (refinement.doubles()) {
-        next.start = refinement.beside_repelling();
-        beside = {next.start, refinement.torques()};
+        beside = refinement.beside_repelling();
+        next.start = beside->state;
       }
     }
     if (!repels && search.try_contact_first) return found;

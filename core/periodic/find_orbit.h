@@ -35,13 +35,6 @@ struct OrbitSearch {
   ReferenceOrbits* references = nullptr;  ///< shared by lubricants, to start from; may be null
 };
 
-/// The evidence that a motion has no period: all orbits that were found repel, also of the longest
-/// period.
-struct AperiodicMotion {
-  MarchState start{};  ///< at mesh phase 0, beside an orbit that repels
-  Torques torques;     ///< of that orbit
-};
-
 /// The number of oscillations of the mesh on its mean stiffness in a mesh cycle.
 double mesh_oscillations(const GearPairSystem& system, double mean_pinion_speed);
 
@@ -49,10 +42,10 @@ double mesh_oscillations(const GearPairSystem& system, double mean_pinion_speed)
 bool oscillates_too_often(double mesh_oscillations);
 
 /// Returns nullopt if shooting does not converge, the orbit repels or may repel, or the tolerance
-/// needs more than the largest number of steps. `aperiodic` then holds what shows that a march will
-/// not settle either, if anything does. Adds to `work`.
+/// needs more than the largest number of steps. `aperiodic` then holds a point beside an orbit that
+/// repels, if all orbits that were found do, also of the longest period: a march from there will
+/// not settle either. Adds to `work`.
 std::optional<PeriodicOrbit> find_orbit(const PeriodicProblem& problem, const OrbitSearch& search,
-                                        SolverWork& work,
-                                        std::optional<AperiodicMotion>& aperiodic);
+                                        SolverWork& work, std::optional<SectionPoint>& aperiodic);
 
 }  // namespace tribodyn

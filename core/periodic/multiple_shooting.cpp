@@ -31,8 +31,12 @@ MultipleShooting::MultipleShooting(const PeriodicProblem& problem, OrbitFriction
       derivatives_(storage.derivatives),
       change_(storage.change),
       duration_(storage.duration),
-      block_{system_, grid, side(), problem.solve_wheel_torque, frozen_} {
-  system_.regime = orbit.regime = {block_.side, true};
+      block_{system_,
+             orbit.torques,
+             grid,
+             orbit.torques.pinion >= 0 ? 1 : -1,
+             problem.solve_wheel_torque,
+             frozen_} {
   // The torque has a residual of its own: 0.
   for (int i = 0; i < kTorqueUnknown; ++i) per_scale_[i] = 1 / scale_(i);
   end_.resize(kUnknowns, steps_);
@@ -143,7 +147,7 @@ double MultipleShooting::newton_step() {
     start[steps_] = start[0];
   }
   for (int s = 0; s < steps_; ++s) duration_[s] = change_at(s + 1)[kTorqueUnknown];
-  add_to_unknown(at_section[kTorqueUnknown]);
+  unknown_torque() += at_section[kTorqueUnknown];
   is_filled_ = false;
   // Two steps with the same derivatives tell how much is left; the first one, where they were new,
   // came twice as near as those that follow will.
@@ -171,13 +175,14 @@ bool MultipleShooting::evaluate(Nodes nodes) {
     if (s < steps_) least = std::min(least, block_.side * response_.middle[kMeshForceRow][s]);
   }
   bool good = false;
-  if (least > light_load()) {
+  if (least > light_load_) {
     const GridContacts& contacts =
         nodes == Nodes::kAll ? grid_.contacts() : grid_.contacts_at_starts();
     good = friction_.evaluate(block_, contacts, response_, orbit_.friction, orbit_.figures);
   } else {
     write_pieces();
-    good = friction_.evaluate(grid_, orbit_.pieces, light_load(), orbit_.friction, orbit_.figures);
+    good = friction_.evaluate(grid_, orbit_.pieces, orbit_.torques, light_load_, orbit_.friction,
+                              orbit_.figures);
   }
   if (!good) return false;
   orbit_.contact_loss = false;
@@ -208,7 +213,6 @@ void MultipleShooting::finish(SolverWork& work) {
   if (!is_filled_) fill();
   write_pieces();
   orbit_.state = orbit_.pieces.front().start;
-  orbit_.torques = system_.torques();
 }
 
 }  // namespace tribodyn

@@ -26,7 +26,7 @@ constexpr ContactInput kConditionInputs[kConditionSlopes] = {
 
 }  // namespace
 
-OrbitContacts::OrbitContacts(GearPairSystem& system, const MeshGrid& grid,
+OrbitContacts::OrbitContacts(const GearPairSystem& system, const MeshGrid& grid,
                              const FlankContactBatch& batch, const ContactSensitivityModel& model,
                              const PeriodicOrbit& orbit, double light_load)
     : system_(system),
@@ -76,12 +76,11 @@ std::size_t OrbitContacts::most_contacts() const {
 /// The contacts of one instant. False where one has no derivatives.
 bool OrbitContacts::see(const OrbitPiece& piece, int part, ContactsAt& out) {
   const MarchState& y = state_of(piece, part);
-  system_.regime = piece.regime;
   Mechanics at;
   if (piece.node >= 0) {
-    system_.kinematics(grid_.at(piece.node + part), y.data(), at);
+    system_.kinematics(grid_.at(piece.node + part), piece.regime, y.data(), at);
   } else {
-    system_.kinematics(piece.phase + 0.5 * part * piece.length, y.data(), at);
+    system_.kinematics(piece.phase + 0.5 * part * piece.length, piece.regime, y.data(), at);
   }
   out.mesh_force = at.mesh_force;
   out.transmission_error = at.transmission_error;

@@ -30,11 +30,11 @@ struct ContactsAt {
 class OrbitContacts {
  public:
   /// Keeps the references. Under less than `light_load` [N] the friction arms are held.
-  OrbitContacts(GearPairSystem& system, const MeshGrid& grid, const FlankContactBatch& batch,
+  OrbitContacts(const GearPairSystem& system, const MeshGrid& grid, const FlankContactBatch& batch,
                 const ContactSensitivityModel& model, const PeriodicOrbit& orbit,
                 double light_load);
 
-  /// Returns false if a contact has no derivatives. Changes the system's regime.
+  /// Returns false if a contact has no derivatives.
   bool differentiate();
   /// Start, middle or end of a piece.
   const ContactsAt& at(std::size_t piece, int part) const {
@@ -72,7 +72,7 @@ class OrbitContacts {
   template <class ByCondition>
   static ArmSlopes by_motion(const Contact& contact, ByCondition&& by);
 
-  GearPairSystem& system_;
+  const GearPairSystem& system_;
   const MeshGrid& grid_;
   const FlankContactBatch& batch_;
   const ContactSensitivityModel& model_;

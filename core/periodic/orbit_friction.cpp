@@ -40,14 +40,13 @@ std::array<const double*, 3> states(const OrbitPiece& piece) {
 /// Mechanics, loads and motion of the flanks at part 0, 1, 2 of a piece: its start, middle, end.
 /// Tells of each loaded contact: on_contact(flank pair, its kinematics, its conditions).
 template <class OnContact>
-void visit_flanks(GearPairSystem& system, const MeshGrid& grid, const OrbitPiece& piece, int part,
-                  Instant& at, OnContact&& on_contact) {
-  system.regime = piece.regime;
+void visit_flanks(const GearPairSystem& system, const MeshGrid& grid, const OrbitPiece& piece,
+                  int part, Instant& at, OnContact&& on_contact) {
   const double* state = states(piece)[part];
   if (piece.node >= 0) {
-    system.mechanics(grid.at(piece.node + part), state, at);
+    system.mechanics(grid.at(piece.node + part), piece.regime, state, at);
   } else {
-    system.mechanics(piece.phase + 0.5 * part * piece.length, state, at);
+    system.mechanics(piece.phase + 0.5 * part * piece.length, piece.regime, state, at);
   }
   at.load = {};
   const double load = piece.regime.load(at.mesh_force);
@@ -117,8 +116,9 @@ void SolvedContacts::copy(std::size_t i, ContactFigures& to) const {
   to.limiting_stress_at_centre = limiting_stress_at_centre_[i];
 }
 
-SolvedPieces solved_pieces(GearPairSystem& system, const MeshGrid& grid,
-                           const std::vector<OrbitPiece>& pieces, const SolvedContacts& contacts) {
+SolvedPieces solved_pieces(const GearPairSystem& system, const MeshGrid& grid,
+                           const std::vector<OrbitPiece>& pieces, const SolvedContacts& contacts,
+                           const FlankContactModel& model) {
   SolvedPieces out;
   out.instants.resize(number_instants(pieces, out.first));
   int n = 0, contact = 0;
@@ -129,7 +129,7 @@ SolvedPieces solved_pieces(GearPairSystem& system, const MeshGrid& grid,
                    [&](int k, const FlankKinematics&, const ContactConditions& conditions) {
                      ContactFigures& solution = at.contact[k];
                      contacts.copy(contact++, solution);
-                     system.contact_model().complete(conditions, solution);
+                     model.complete(conditions, solution);
                      at.pinion_friction_torque +=
                          at.motion[k].pinion_friction_arm * solution.friction;
                      at.gear_friction_torque += at.motion[k].gear_friction_arm * solution.friction;
@@ -150,10 +150,12 @@ double OrbitFigures::distance(const OrbitFigures& other) const {
                    relative(torque, other.torque), dte > 0 ? extremes / dte : 0});
 }
 
-OrbitFriction::OrbitFriction(GearPairSystem& system, const FlankContactBatch& contacts,
-                             double tolerance, std::optional<double> coefficient)
+OrbitFriction::OrbitFriction(const GearPairSystem& system, const FlankContactBatch& contacts,
+                             ContactTally& tally, double tolerance,
+                             std::optional<double> coefficient)
     : system_(system),
       contacts_(contacts),
+      tally_(tally),
       digits_(tolerance >= kHalfDigitsTolerance ? Digits::kHalf : Digits::kFull),
       coefficient_(coefficient),
       geometries_(contacts.model().reduced_modulus(), contacts.model().options()) {}
@@ -215,15 +217,16 @@ bool OrbitFriction::solve_contacts(const ContactGeometries& geometries, int coun
       {gathered_[kGatheredLoad], gathered_[kGatheredPinionX], gathered_[kGatheredPinionY],
        gathered_[kGatheredGearX], gathered_[kGatheredGearY]},
       results, digits_);
-  system_.count_contacts(count);
-  for (int i = 0; i < count; ++i) {
-    if (status_[i] != ContactStatus::kOk) system_.refuse(status_[i]);
+  tally_.solutions += count;
+  for (int i = 0; i < count && tally_.refusal == ContactStatus::kOk; ++i) {
+    tally_.refusal = status_[i];
   }
-  return system_.refusal() == ContactStatus::kOk;
+  return tally_.refusal == ContactStatus::kOk;
 }
 
 bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
-                             double light, FrozenFriction& friction, OrbitFigures& f) {
+                             const Torques& torques, double light, FrozenFriction& friction,
+                             OrbitFigures& f) {
   if (!solve_contacts(geometries_, gather(grid, pieces))) return false;
   const double* contact_friction = solved_->friction();
   friction.clear(samples_.size());
@@ -257,7 +260,8 @@ bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>
       const double* state = states(p)[part];
       const double duration =
           p.length * (part == 1 ? 4 : 1) / 6 * system_.cycle_angle() / state[kPinionSpeed];
-      const double share = loss / system_.input_speed(state[kPinionShaftSpeed], state[kWheelSpeed]);
+      const double share =
+          loss / system_.input_speed(torques, state[kPinionShaftSpeed], state[kWheelSpeed]);
       f.loss_energy += duration * loss;
       squares += duration * share * share;
       time += duration;
@@ -307,8 +311,8 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
     const double inside = contacts.stride == 2 ? 6 : node % 2 == 0 ? 2 : 4;
     const double weight = node == 0 || node == last ? (contacts.stride == 2 ? 3 : 1) : inside;
     const double duration = weight / (3 * last) * system_.cycle_angle() / at[kPinionSpeed][lane];
-    const double share =
-        loss / system_.input_speed(at[kPinionShaftSpeed][lane], at[kWheelSpeed][lane]);
+    const double share = loss / system_.input_speed(block.torques, at[kPinionShaftSpeed][lane],
+                                                    at[kWheelSpeed][lane]);
     f.loss_energy += duration * loss;
     squares += duration * share * share;
     time += duration;

@@ -48,10 +48,11 @@ struct SolvedPieces {
   bool goes_on(std::size_t piece) const { return piece > 0 && first[piece] < first[piece - 1] + 3; }
 };
 
-/// `grid`: that of the pieces' nodes; `contacts`: all contacts of the pieces. Changes the system's
-/// regime.
-SolvedPieces solved_pieces(GearPairSystem& system, const MeshGrid& grid,
-                           const std::vector<OrbitPiece>& pieces, const SolvedContacts& contacts);
+/// `grid`: that of the pieces' nodes; `contacts`: all contacts of the pieces, which `model`
+/// completes.
+SolvedPieces solved_pieces(const GearPairSystem& system, const MeshGrid& grid,
+                           const std::vector<OrbitPiece>& pieces, const SolvedContacts& contacts,
+                           const FlankContactModel& model);
 
 /// The scalar outputs of an orbit whose changes measure the error of grids and of the Picard
 /// iteration.
@@ -75,14 +76,15 @@ class OrbitFriction {
   /// Keeps the references. `tolerance`: of the orbit's figures, relative; from
   /// kHalfDigitsTolerance on contacts are solved with half of the digits. With a `coefficient`
   /// friction is Coulomb's, and no contact is solved.
-  OrbitFriction(GearPairSystem& system, const FlankContactBatch& contacts, double tolerance,
+  OrbitFriction(const GearPairSystem& system, const FlankContactBatch& contacts,
+                ContactTally& tally, double tolerance,
                 std::optional<double> coefficient = std::nullopt);
 
   /// Evaluates friction on the pieces of an orbit, and all figures but the torque. Where the load
   /// is below `light` [N], the friction arms are held constant. `grid`: that of the pieces' nodes.
-  /// Returns false if a contact is refused; the system has the reason.
-  bool evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces, double light,
-                FrozenFriction& friction, OrbitFigures& figures);
+  /// Returns false if a contact has been refused; the tally has the reason.
+  bool evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces, const Torques& torques,
+                double light, FrozenFriction& friction, OrbitFigures& figures);
   /// The same on a completed cycle whose flanks are in compression all the time. `contacts`: those
   /// of the block's grid at which friction is evaluated.
   bool evaluate(const StepBlock& block, const GridContacts& contacts, const CycleResponse& response,
@@ -107,8 +109,9 @@ class OrbitFriction {
   /// Solves the contacts of `gathered_`. Returns false if one is refused.
   bool solve_contacts(const ContactGeometries& geometries, int count);
 
-  GearPairSystem& system_;
+  const GearPairSystem& system_;
   const FlankContactBatch& contacts_;
+  ContactTally& tally_;
   const Digits digits_;
   const std::optional<double> coefficient_;
   ContactGeometries geometries_;

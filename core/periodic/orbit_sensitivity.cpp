@@ -31,11 +31,6 @@ struct DifferentiatedInstant {
   double error_by_approach, velocity_by_approach;
 };
 
-MarchScales scales_under(GearPairSystem& system, const Torques& torques, double mean_speed) {
-  system.set_torques(torques);
-  return march_scales(system, mean_speed);
-}
-
 class OrbitDifferentiator {
  public:
   OrbitDifferentiator(const PeriodicProblem& problem, const PeriodicOrbit& orbit)
@@ -45,7 +40,7 @@ class OrbitDifferentiator {
         friction_(orbit.friction),
         mean_speed_(problem.mean_pinion_speed),
         solve_wheel_torque_(problem.solve_wheel_torque),
-        scales_(scales_under(system_, orbit.torques, mean_speed_)),
+        scales_(march_scales(system_, orbit.torques, mean_speed_)),
         light_load_(kLightShare * scales_.torque / system_.mesh().mean_pinion_contact_radius()),
         instruction_set_(problem.contacts.instruction_set()),
         constants_(driveline_constants(system_)),
@@ -124,17 +119,16 @@ class OrbitDifferentiator {
   }
 
   /// A state in a regime under friction arms that are given.
-  void evaluate(const MeshPhase& phase, const ContactRegime& regime, const MarchState& y,
+  void evaluate(const MeshPhase& phase, ContactRegime regime, const MarchState& y,
                 const FrictionArms& arms, DifferentiatedInstant& out) {
-    system_.regime = regime;
     Mechanics at;
-    system_.mechanics(phase, y.data(), at);
+    system_.mechanics(phase, regime, y.data(), at);
     StageSlopes& s = out.slopes;
     const MeshFunctions& m = at.mesh;
     s.load = regime.load(at.mesh_force);
     at.pinion_friction_torque = arms.pinion * s.load;
     at.gear_friction_torque = arms.gear * s.load;
-    system_.motion(y.data(), at, s.rate.data());
+    system_.motion(y.data(), at, orbit_.torques, s.rate.data());
     const bool gap = regime.side == 0;
     const double load_by_force = s.load > 0 ? regime.side : 0;
     const double radius_by_approach = system_.gear_radius_by_approach(phase, y[kMeshApproach]);
@@ -173,10 +167,7 @@ class OrbitDifferentiator {
       phase[part] = phase_of(p, part);
     }
     behind_ = part_[0];
-    const bool goes_on = index + 1 < orbit_.pieces.size() &&
-                         orbit_.pieces[index + 1].regime.side == p.regime.side &&
-                         orbit_.pieces[index + 1].regime.loaded == p.regime.loaded;
-    if (goes_on) {
+    if (index + 1 < orbit_.pieces.size() && !is_event(index)) {
       part_[2] = behind_;
     } else {
       evaluate(phase[2], p.regime, p.end, arms[2], part_[2]);
@@ -195,9 +186,7 @@ class OrbitDifferentiator {
 
   /// Whether flanks part or meet, or their load begins or ends, between a piece and the next one.
   bool is_event(std::size_t index) const {
-    const ContactRegime &before = orbit_.pieces[index].regime,
-                        &after = orbit_.pieces[index + 1].regime;
-    return before.side != after.side || before.loaded != after.loaded;
+    return orbit_.pieces[index].regime != orbit_.pieces[index + 1].regime;
   }
 
   /// Takes the adjoints back across the place where flanks part or meet, at the end of a piece: at
@@ -292,8 +281,8 @@ class OrbitDifferentiator {
     }
   }
 
-  double input_speed(const MarchState& y) const {
-    return system_.input_speed(y[kPinionShaftSpeed], y[kWheelSpeed]);
+  double input_speed(double pinion_shaft_speed, double wheel_speed) const {
+    return system_.input_speed(orbit_.torques, pinion_shaft_speed, wheel_speed);
   }
 
   /// The integrals of a piece by Simpson's rule. An end of the piece that is an event moves with
@@ -310,7 +299,8 @@ class OrbitDifferentiator {
       const MarchState& y = state_of(p, part);
       const double per_phase = system_.cycle_angle() / y[kPinionSpeed];
       const double weight = p.length / 6 * (part == 1 ? 4 : 1) * per_phase;
-      const double speed = input_speed(y), share = at.sum[kLossSum] / speed;
+      const double speed = input_speed(y[kPinionShaftSpeed], y[kWheelSpeed]);
+      const double share = at.sum[kLossSum] / speed;
       const double by_loss = 2 * share / speed;  // of the square
       const bool moves = part == 0 ? begins : part == 2 ? ends : begins || ends;
       const double force_change = moves ? weight * force_slope(index, part) : 0;
@@ -326,8 +316,8 @@ class OrbitDifferentiator {
         by[kPinionSpeed] -= value / y[kPinionSpeed];
         if (squared) {
           // By the speed at which the power comes in.
-          by[kPinionShaftSpeed] -= weight * by_loss * share * system_.input_speed(1, 0);
-          by[kWheelSpeed] -= weight * by_loss * share * system_.input_speed(0, 1);
+          by[kPinionShaftSpeed] -= weight * by_loss * share * input_speed(1, 0);
+          by[kWheelSpeed] -= weight * by_loss * share * input_speed(0, 1);
         }
         for (int i = 1; i < kRates; ++i) direct_[part][i][f] += by[i];
         sum[f] += value;
@@ -472,7 +462,7 @@ class OrbitDifferentiator {
     return out;
   }
 
-  GearPairSystem& system_;
+  const GearPairSystem& system_;
   const MeshGrid& grid_;
   const PeriodicOrbit& orbit_;
   FrozenFriction friction_;

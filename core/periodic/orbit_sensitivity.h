@@ -73,13 +73,13 @@ struct OrbitSensitivity {
 
 /// Largest modulus of the Floquet multipliers but for the one nearest to 1, with friction that
 /// follows the motion. The orbit must have been solved for, with its friction. Returns nullopt if a
-/// contact has no derivatives. Changes the system's regime and torques.
+/// contact has no derivatives.
 std::optional<double> multiplier_with_friction(const PeriodicProblem& problem,
                                                const PeriodicOrbit& orbit);
 
 /// The orbit must have been solved for, with its friction and figures. Returns nullopt if a contact
 /// has no derivatives (no sliding, no entrainment) or if the shooting equations are singular to
-/// rounding (a fold). Changes the system's regime and torques.
+/// rounding (a fold).
 std::optional<OrbitSensitivity> orbit_sensitivity(const PeriodicProblem& problem,
                                                   const PeriodicOrbit& orbit);
 

@@ -51,7 +51,7 @@ bool picard_iterate(Shooting& shooting, const ShootingOptions& options, Periodic
 OrbitSolver::OrbitSolver(const PeriodicProblem& problem, SolverWork& work,
                          std::optional<double> coefficient)
     : problem_(problem),
-      friction_(problem.system, problem.contacts, problem.tolerance, coefficient),
+      friction_(problem.system, problem.contacts, problem.tally, problem.tolerance, coefficient),
       work_(work) {}
 
 bool OrbitSolver::solve_without_friction(const MeshGrid& grid, const ShootingOptions& options,

@@ -2,8 +2,9 @@
 
 namespace tribodyn {
 
-void correct_period(GearPairSystem& system, const MarchState& before, int period,
-                    double mean_pinion_speed, bool solve_wheel_torque, MarchState& after) {
+void correct_period(const GearPairSystem& system, const MarchState& before, int period,
+                    double mean_pinion_speed, bool solve_wheel_torque, Torques& torques,
+                    MarchState& after) {
   const DrivelineDynamics& d = system.dynamics();
   const MeshData& mesh = system.mesh();
   const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
@@ -13,7 +14,6 @@ void correct_period(GearPairSystem& system, const MarchState& before, int period
            ratio * (d.gear_inertia * y[kGearSpeed] + d.wheel_inertia * y[kWheelSpeed]);
   };
   const double excess = (momentum(after) - momentum(before)) / after[kTime];
-  Torques torques = system.torques();
   if (solve_wheel_torque) {
     torques.wheel += excess / ratio;
     after[kGearShaftTwist] += excess / ratio / d.gear_shaft_stiffness;
@@ -23,7 +23,6 @@ void correct_period(GearPairSystem& system, const MarchState& before, int period
     after[kMeshApproach] -=
         excess / (mesh.mean_pinion_contact_radius() * mesh.mean_mesh_stiffness());
   }
-  system.set_torques(torques);
   const double shift = mean_pinion_speed - period * system.cycle_angle() / after[kTime];
   after[kPinionSpeed] += shift;
   after[kGearSpeed] += ratio * shift;

@@ -14,8 +14,7 @@ struct CycleDerivatives;
 
 /// A periodic orbit, or the state from which shooting starts for one.
 struct PeriodicOrbit {
-  MarchState state{};    ///< at mesh phase 0
-  ContactRegime regime;  ///< there
+  MarchState state{};  ///< at mesh phase 0
   Torques torques;
   int period = 1;  ///< [mesh cycles]
   FrozenFriction friction;

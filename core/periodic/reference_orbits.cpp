@@ -64,7 +64,7 @@ std::vector<PeriodicOrbit> reference_orbits(const PeriodicProblem& problem,
         options.bilateral_contact && orbit.least_pressing_force < -kTensionForSeparation;
     if (parts || (out.size() > 1 && error < kSmall)) break;
   }
-  problem.system.take_refusal();
+  problem.tally.take_refusal();
   if (out.size() == 1) out.front().estimated_error = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i + 1 < out.size(); ++i) {
     out[i].estimated_error =
@@ -78,7 +78,7 @@ std::vector<PeriodicOrbit> reference_orbits(const PeriodicProblem& problem,
     out[0].estimated_error =
         std::max(out[0].estimated_error,
                  error_by_other_friction(other, problem.grids, precise, out[0], out.back()));
-    problem.system.take_refusal();
+    problem.tally.take_refusal();
   }
   // An error below that of second-order steps may be an accident of one friction coefficient.
   for (std::size_t i = 1; i + 1 < out.size(); ++i) {
@@ -105,9 +105,7 @@ const std::vector<PeriodicOrbit>& ReferenceOrbits::find(const PeriodicProblem& p
     found_.clear();
     steps_kept_ = 0;
   }
-  const Torques torques = problem.system.torques();
   auto made = reference_orbits(problem, options, origin, least);
-  problem.system.set_torques(torques);
   for (const PeriodicOrbit& each : made) steps_kept_ += each.steps_per_mesh_cycle;
   return found_.emplace(key, std::move(made)).first->second;
 }

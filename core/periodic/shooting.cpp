@@ -4,15 +4,6 @@
 #include <utility>
 
 namespace tribodyn {
-namespace {
-
-MarchScales scales_at(const Torques& torques, GearPairSystem& system, double mean_pinion_speed) {
-  system.set_torques(torques);
-  return march_scales(system, mean_pinion_speed);
-}
-
-}  // namespace
-
 Shooting::Shooting(const PeriodicProblem& problem, OrbitFriction& friction, const MeshGrid& grid,
                    const ShootingOptions& options, PeriodicOrbit& orbit)
     : problem_(problem),
@@ -21,9 +12,12 @@ Shooting::Shooting(const PeriodicProblem& problem, OrbitFriction& friction, cons
       grid_(grid),
       options_(options),
       orbit_(orbit),
-      scales_(scales_at(orbit.torques, system_, problem.mean_pinion_speed)),
+      scales_(march_scales(system_, orbit.torques, problem.mean_pinion_speed)),
       mean_force_(scales_.torque / system_.mesh().mean_pinion_contact_radius()),
       period_time_(orbit.period * system_.cycle_angle() / problem.mean_pinion_speed) {
+  const double of_torque =
+      std::abs(orbit.torques.pinion) / system_.mesh().mean_pinion_contact_radius();
+  light_load_ = 1e-3 * (of_torque < kLightForce ? of_torque : mean_force_);
   for (int i = 0; i + 1 < kUnknowns; ++i) scale_(i) = scales_.of(system_.mesh(), i + 1);
   scale_(kUnknowns - 1) = scales_.torque;
 }
@@ -55,19 +49,12 @@ void Shooting::throw_if_interrupted() const {
   if (problem_.interrupted && problem_.interrupted()) throw Cancelled();
 }
 
-void Shooting::add_to_unknown(double change) {
-  Torques t = system_.torques();
-  (problem_.solve_wheel_torque ? t.wheel : t.pinion) += change;
-  system_.set_torques(t);
-}
-
 bool Shooting::evaluate_friction(Nodes nodes) {
   std::swap(friction_before_, orbit_.friction);
   if (!evaluate(nodes)) return false;
   orbit_.friction_change = orbit_.friction.distance(friction_before_);
   orbit_.least_pressing_force = friction_.least_pressing_force() / mean_force_;
-  orbit_.figures.torque =
-      problem_.solve_wheel_torque ? system_.torques().wheel : system_.torques().pinion;
+  orbit_.figures.torque = unknown_torque();
   return true;
 }
 

@@ -30,8 +30,7 @@ class Shooting {
   /// The floor of the scales, 0.1 N m, is five times this force [N].
   static constexpr double kLightForce = 1;
 
-  /// Keeps the references. Sets the system's torques to the orbit's: an orbit must not depend on
-  /// earlier attempts.
+  /// Keeps the references.
   Shooting(const PeriodicProblem& problem, OrbitFriction& friction, const MeshGrid& grid,
            const ShootingOptions& options, PeriodicOrbit& orbit);
 
@@ -43,24 +42,19 @@ class Shooting {
   virtual bool evaluate(Nodes nodes) = 0;
 
   void throw_if_interrupted() const;
-  void add_to_unknown(double change);
-  /// Load below which the friction arms are held constant [N]: 1e-3 of the force of the torque
-  /// itself, because the scales have a floor.
-  double light_load() const {
-    const double of_torque =
-        std::abs(orbit_.torques.pinion) / system_.mesh().mean_pinion_contact_radius();
-    return 1e-3 * (of_torque < kLightForce ? of_torque : mean_force_);
-  }
-  int side() const { return system_.torques().pinion >= 0 ? 1 : -1; }
+  double& unknown_torque() { return problem_.unknown(orbit_.torques); }
 
   const PeriodicProblem& problem_;
-  GearPairSystem& system_;
+  const GearPairSystem& system_;
   OrbitFriction& friction_;
   const MeshGrid& grid_;
   const ShootingOptions& options_;
   PeriodicOrbit& orbit_;
   MarchScales scales_;
   double mean_force_, period_time_;
+  /// Load below which the friction arms are held constant [N]: 1e-3 of the force of the torque
+  /// itself, because the scales have a floor.
+  double light_load_;
   PoincareMapJacobian::Vector scale_;
   FrozenFriction friction_before_;
 };

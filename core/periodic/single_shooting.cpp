@@ -16,8 +16,8 @@ SingleShooting::SingleShooting(const PeriodicProblem& problem, OrbitFriction& fr
 
 bool SingleShooting::march(MarchState& state, Sensitivity* s) {
   throw_if_interrupted();
-  start_regime(state);
-  return march_.run(orbit_.friction, options_.bilateral_contact, state, s, &orbit_.pieces);
+  return march_.run(orbit_.torques, orbit_.friction, options_.bilateral_contact, state, s,
+                    &orbit_.pieces);
 }
 
 bool SingleShooting::march_transient(int cycles) {
@@ -27,7 +27,7 @@ bool SingleShooting::march_transient(int cycles) {
     if (!march(y, nullptr)) return false;
     if (options_.renew_friction && i % kRenewal == 0 && !evaluate_friction()) return false;
     correct_period(system_, orbit_.state, orbit_.period, problem_.mean_pinion_speed,
-                   problem_.solve_wheel_torque, y);
+                   problem_.solve_wheel_torque, orbit_.torques, y);
     orbit_.state = y;
   }
   return true;
@@ -39,9 +39,10 @@ bool SingleShooting::renew_jacobian() {
     return true;
   MarchState y = orbit_.state;
   Sensitivity sensitivity;
-  start_regime(y);
-  if (!march_.run(orbit_.friction, options_.bilateral_contact, y, &sensitivity, nullptr))
+  if (!march_.run(orbit_.torques, orbit_.friction, options_.bilateral_contact, y, &sensitivity,
+                  nullptr)) {
     return false;
+  }
   orbit_.jacobian.emplace(sensitivity, scale_, period_time_);
   orbit_.distance_since_jacobian = 0;
   orbit_.pieces_of_jacobian = orbit_.pieces.size();
@@ -67,7 +68,7 @@ double SingleShooting::newton_step() {
   residual(kUnknowns - 1) = y[kTime] / period_time_ - 1;
   const PoincareMapJacobian::Vector step = orbit_.jacobian->step(residual);
   for (int i = 0; i + 1 < kUnknowns; ++i) orbit_.state[i + 1] += scale_(i) * step(i);
-  add_to_unknown(scale_(kUnknowns - 1) * step(kUnknowns - 1));
+  unknown_torque() += scale_(kUnknowns - 1) * step(kUnknowns - 1);
   orbit_.distance_since_jacobian += step.norm();
   return step.norm();
 }
@@ -75,16 +76,8 @@ double SingleShooting::newton_step() {
 bool SingleShooting::evaluate(Nodes) {
   orbit_.contact_loss = std::any_of(orbit_.pieces.begin(), orbit_.pieces.end(),
                                     [](const OrbitPiece& p) { return p.regime.side == 0; });
-  return friction_.evaluate(grid_, orbit_.pieces, light_load(), orbit_.friction, orbit_.figures);
-}
-
-void SingleShooting::start_regime(const MarchState& state) {
-  if (options_.bilateral_contact) {
-    system_.regime = {side(), true};
-  } else {
-    system_.regime = system_.regime_of(0, state.data());
-  }
-  orbit_.regime = system_.regime;
+  return friction_.evaluate(grid_, orbit_.pieces, orbit_.torques, light_load_, orbit_.friction,
+                            orbit_.figures);
 }
 
 void SingleShooting::finish(SolverWork& work) {
@@ -92,7 +85,6 @@ void SingleShooting::finish(SolverWork& work) {
   work.accepted_steps += march_.steps();
   work.events += march_.events();
   work.mesh_cycles += march_.steps() / grid_.steps();
-  orbit_.torques = system_.torques();
 }
 
 }  // namespace tribodyn

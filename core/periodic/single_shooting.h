@@ -26,7 +26,6 @@ class SingleShooting final : public Shooting {
   double newton_step() override;
   bool evaluate(Nodes nodes) override;
   bool march(MarchState& state, Sensitivity* sensitivity);
-  void start_regime(const MarchState& state);
 
   Rk4WithEvents march_;
 };

@@ -24,27 +24,30 @@ constexpr int kStateOf[kUnknowns - 1] = {kPinionShaftTwist, kMeshApproach, kGear
 /// The period map with its corrections, in scaled unknowns.
 class PeriodMap {
  public:
-  PeriodMap(const PeriodicProblem& problem, const MarchOptions& march, SolverWork& work)
+  PeriodMap(const PeriodicProblem& problem, const Torques& torques, const MarchOptions& march,
+            ContactSolver& contacts, SolverWork& work)
       : system_(problem.system),
         problem_(problem),
         march_(march),
+        contacts_(contacts),
         work_(work),
-        scales_(march_scales(system_, problem.mean_pinion_speed)) {
+        scales_(march_scales(system_, torques, problem.mean_pinion_speed)) {
     for (int i = 0; i + 1 < kUnknowns; ++i) scale_(i) = scales_.of(system_.mesh(), kStateOf[i]);
     scale_(kUnknowns - 1) = scales_.torque;
   }
 
-  Vector pack(const MarchState& state) const {
+  Vector pack(const SectionPoint& at) const {
     Vector v;
-    for (int i = 0; i + 1 < kUnknowns; ++i) v(i) = state[kStateOf[i]] / scale_(i);
-    v(kUnknowns - 1) = unknown_torque() / scale_(kUnknowns - 1);
+    for (int i = 0; i + 1 < kUnknowns; ++i) v(i) = at.state[kStateOf[i]] / scale_(i);
+    Torques torques = at.torques;
+    v(kUnknowns - 1) = problem_.unknown(torques) / scale_(kUnknowns - 1);
     return v;
   }
 
-  void unpack(const Vector& v, MarchState& state) {
-    for (int i = 0; i + 1 < kUnknowns; ++i) state[kStateOf[i]] = v(i) * scale_(i);
-    set_unknown_torque(v(kUnknowns - 1) * scale_(kUnknowns - 1));
-    system_.regime = system_.regime_of(0, state.data());
+  void unpack(const Vector& v, SectionPoint& at) const {
+    for (int i = 0; i + 1 < kUnknowns; ++i) at.state[kStateOf[i]] = v(i) * scale_(i);
+    problem_.unknown(at.torques) = v(kUnknowns - 1) * scale_(kUnknowns - 1);
+    at.regime = system_.regime_of(0, at.state.data());
   }
 
   /// Whether an extrapolation leaves the mesh about where it is: far out the march goes step by
@@ -57,48 +60,39 @@ class PeriodMap {
   }
 
   /// Mesh cycles at constant torques; returns the time that they take.
-  double march(MarchState& state, int cycles) {
+  double march(SectionPoint& at, int cycles) {
     double time = 0;
     for (int i = 0; i < cycles; ++i) {
-      march_mesh_cycle(system_, scales_, march_, state, work_);
-      time += state[kTime];
+      march_mesh_cycle(system_, scales_, march_, contacts_, at, work_);
+      time += at.state[kTime];
     }
     return time;
   }
 
-  /// One period from `state`, corrected for speed and torque.
-  void advance(MarchState& state, int period) {
-    const MarchState before = state;
-    state[kTime] = march(state, period);
+  /// One period, corrected for speed and torque.
+  void advance(SectionPoint& at, int period) {
+    const MarchState before = at.state;
+    at.state[kTime] = march(at, period);
     correct_period(system_, before, period, problem_.mean_pinion_speed, problem_.solve_wheel_torque,
-                   state);
-    const ContactRegime kept = system_.regime;
-    system_.regime = system_.regime_of(0, state.data());
-    if (system_.regime.side == kept.side) system_.regime = kept;
+                   at.torques, at.state);
+    const ContactRegime corrected = system_.regime_of(0, at.state.data());
+    if (corrected.side != at.regime.side) at.regime = corrected;
   }
 
   /// Scaled change of the state over some mesh cycles.
-  double change(const MarchState& state, int cycles) {
-    const Torques torques = system_.torques();
-    const ContactRegime regime = system_.regime;
-    const Vector before = pack(state);
-    MarchState moved = state;
+  double change(const SectionPoint& from, int cycles) {
+    SectionPoint moved = from;
     advance(moved, cycles);
-    const double norm = (pack(moved) - before).norm();
-    system_.set_torques(torques);
-    system_.regime = regime;
-    return norm;
+    return (pack(moved) - pack(from)).norm();
   }
 
   /// Largest modulus of the Floquet multipliers of a periodic response under its own constant
   /// torques, by forward differences, but for the one nearest to 1: the train as a whole runs on at
   /// any speed. (Corrections would shift the others: where the period doubles, by more than 1 %.)
-  double largest_multiplier(const MarchState& state, int period) {
+  double largest_multiplier(const SectionPoint& at, int period) {
     constexpr double kStep = 1e-4;
-    const Torques torques = system_.torques();
-    const ContactRegime regime = system_.regime;
-    const Vector origin = pack(state);
-    MarchState moved = state;
+    const Vector origin = pack(at);
+    SectionPoint moved = at;
     march(moved, period);
     const Vector image = pack(moved);
     constexpr int kStates = kWheelSpeed;  // the seven of the section
@@ -106,30 +100,20 @@ class PeriodMap {
     for (int j = 0; j < kStates; ++j) {
       Vector shifted = origin;
       shifted(j) += kStep;
-      moved = state;
+      moved = at;
       unpack(shifted, moved);
       march(moved, period);
       const Vector change = pack(moved) - image;
       for (int i = 0; i < kStates; ++i) monodromy(i, j) = change(i) / kStep;
     }
-    system_.set_torques(torques);
-    system_.regime = regime;
     return leading_multiplier(monodromy).modulus;
   }
 
  private:
-  double unknown_torque() const {
-    return problem_.solve_wheel_torque ? system_.torques().wheel : system_.torques().pinion;
-  }
-  void set_unknown_torque(double value) {
-    Torques t = system_.torques();
-    (problem_.solve_wheel_torque ? t.wheel : t.pinion) = value;
-    system_.set_torques(t);
-  }
-
-  GearPairSystem& system_;
+  const GearPairSystem& system_;
   const PeriodicProblem& problem_;
   const MarchOptions& march_;
+  ContactSolver& contacts_;
   SolverWork& work_;
   MarchScales scales_;
   Vector scale_;
@@ -182,17 +166,17 @@ int shortest_period(const std::vector<Vector>& sections) {
 
 }  // namespace
 
-MarchState static_start(const GearPairSystem& system, double mean_pinion_speed,
-                        double pinion_friction_torque, double gear_friction_torque, double offset) {
+MarchState static_start(const GearPairSystem& system, const Torques& torques,
+                        double mean_pinion_speed, double pinion_friction_torque,
+                        double gear_friction_torque, double offset) {
   const MeshData& mesh = system.mesh();
   const DrivelineDynamics& d = system.dynamics();
   const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
   const MeshFunctions at = mesh.functions(0, 0);
-  const double force =
-      (system.torques().pinion + pinion_friction_torque) / at.pinion_contact_radius;
+  const double force = (torques.pinion + pinion_friction_torque) / at.pinion_contact_radius;
   const double side = force >= 0 ? 1 : -1;
   SectionState section;
-  section.pinion_shaft_twist = system.torques().pinion / d.pinion_shaft_stiffness;
+  section.pinion_shaft_twist = torques.pinion / d.pinion_shaft_stiffness;
   section.gear_shaft_twist =
       (force * at.gear_contact_radius + gear_friction_torque) / d.gear_shaft_stiffness;
   section.pinion_shaft_speed = section.pinion_speed = mean_pinion_speed;
@@ -207,13 +191,11 @@ MarchState static_start(const GearPairSystem& system, double mean_pinion_speed,
   return state;
 }
 
-SteadyState solve_steady_state(const PeriodicProblem& problem, const MarchState& start,
-                               const SteadyStateOptions& options) {
-  GearPairSystem& system = problem.system;
+SteadyState solve_steady_state(const PeriodicProblem& problem, ContactSolver& contacts,
+                               const SectionPoint& start, const SteadyStateOptions& options) {
   SteadyState out;
-  PeriodMap map(problem, options.march, out.work);
-  MarchState state = start;
-  system.regime = system.regime_of(0, state.data());
+  static_cast<SectionPoint&>(out) = start;
+  PeriodMap map(problem, start.torques, options.march, contacts, out.work);
 
   // An extrapolated residual is about (1 - slowest multiplier) times the error, 0.01 at worst.
   const double wanted = 0.01 * problem.tolerance;
@@ -222,7 +204,7 @@ SteadyState solve_steady_state(const PeriodicProblem& problem, const MarchState&
       without_gain = 0;
   double best = kNone, reported = 0;
   bool extrapolated = false;  // the state has not been marched to
-  Vector best_image, marched = map.pack(state);
+  Vector best_image, marched = map.pack(out);
   Extrapolation extrapolation;
   std::vector<Vector> sections;  // of consecutive plain mesh cycles, for finding the period
   while (out.work.mesh_cycles + period <= options.maximum_mesh_cycles) {
@@ -231,38 +213,38 @@ SteadyState solve_steady_state(const PeriodicProblem& problem, const MarchState&
       reported = std::max(reported, std::clamp(done, 0.0, 0.99));
       if (!options.progress(reported)) throw Cancelled();
     }
-    const Vector argument = map.pack(state);
+    const Vector argument = map.pack(out);
     try {
-      map.advance(state, period);
+      map.advance(out, period);
     } catch (const Refusal&) {
       if (!extrapolated) throw;
       // Nobody knows where that was: back to where the march was last.
       extrapolated = false;
-      map.unpack(best < kNone ? best_image : marched, state);
+      map.unpack(best < kNone ? best_image : marched, out);
       plain_left = std::min(16 * ++failures, 96);
       continue;
     }
     extrapolated = false;
-    const Vector image = map.pack(state);
+    const Vector image = map.pack(out);
     out.defect = (image - argument).norm();
     if (out.defect <= wanted) {
       // Once more without extrapolation: the answer lies on a marched orbit.
       if (++confirmed < 2) continue;
       confirmed = 0;
-      out.largest_multiplier = map.largest_multiplier(state, period);
+      out.largest_multiplier = map.largest_multiplier(out, period);
       if (out.largest_multiplier <= 1 + kStabilityMargin) {
         out.settled = true;
         // What repeats after 2 or 4 cycles may do so after fewer.
         for (int fewer = 1; fewer < period; ++fewer) {
-          if (period % fewer != 0 || map.change(state, fewer) > 10 * problem.tolerance) continue;
+          if (period % fewer != 0 || map.change(out, fewer) > 10 * problem.tolerance) continue;
           period = fewer;
-          out.largest_multiplier = map.largest_multiplier(state, period);
+          out.largest_multiplier = map.largest_multiplier(out, period);
         }
         break;
       }
       // Extrapolation finds repelling orbits too, between two branches. The march would have left
       // it: go back to where it was and let it run on for longer.
-      map.unpack(marched, state);
+      map.unpack(marched, out);
       plain_left = 24 * ++failures;
       sections.clear();
       continue;
@@ -287,7 +269,7 @@ SteadyState solve_steady_state(const PeriodicProblem& problem, const MarchState&
     } else if (++without_gain > 3 + (best < 1e-3 ? kWindow : 0)) {
       // Not contracting: take it back and let the transients die for a while. A period that does
       // not settle either gives way to single cycles.
-      if (best < kNone) map.unpack(best_image, state);
+      if (best < kNone) map.unpack(best_image, out);
       if (++failures % 4 == 0) period = 1;
       plain_left = std::min(16 * failures, 96);
       continue;
@@ -296,23 +278,23 @@ SteadyState solve_steady_state(const PeriodicProblem& problem, const MarchState&
     if (extrapolation.ready()) {
       const Vector next = extrapolation.next();
       if (!map.is_sensible(image, next)) continue;
-      map.unpack(next, state);
+      map.unpack(next, out);
       extrapolated = true;
       ++out.accelerations;
     }
   }
   out.period = out.settled ? period : 0;
-  out.state = state;
-  out.regime = system.regime;
-  out.torques = system.torques();
   return out;
 }
 
-double marched_multiplier(const PeriodicProblem& problem, const MarchState& state, int period,
+double marched_multiplier(const PeriodicProblem& problem, const PeriodicOrbit& orbit,
                           const MarchOptions& march, SolverWork& work) {
   SolverWork marched;
-  problem.system.regime = problem.system.regime_of(0, state.data());
-  const double multiplier = PeriodMap(problem, march, marched).largest_multiplier(state, period);
+  ContactSolver contacts(problem.contacts, problem.tally);
+  const double multiplier =
+      PeriodMap(problem, orbit.torques, march, contacts, marched)
+          .largest_multiplier(problem.system.at_section(orbit.pieces.front().start, orbit.torques),
+                              orbit.period);
   work += marched;
   return multiplier;
 }

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "core/integrate/mesh_cycle_march.h"
+#include "core/periodic/periodic_orbit.h"
 #include "core/periodic/periodic_problem.h"
 
 namespace tribodyn {
@@ -16,10 +17,7 @@ struct SteadyStateOptions {
   std::function<bool(double)> progress;  ///< false: throws Cancelled
 };
 
-struct SteadyState {
-  MarchState state{};    ///< at mesh phase 0
-  ContactRegime regime;  ///< there
-  Torques torques;
+struct SteadyState : SectionPoint {
   bool settled = false;
   int period = 0;                 ///< in mesh cycles; 0: none found
   double defect = 0;              ///< scaled change of the state over the last period
@@ -28,11 +26,12 @@ struct SteadyState {
   SolverWork work;
 };
 
-/// The static equilibrium of mesh and shafts at mesh phase 0 and the mean speed, under the system's
-/// torques and the given friction torques [N m] (eqs 2, 3). `offset` [m] is added to the mesh
+/// The static equilibrium of mesh and shafts at mesh phase 0 and the mean speed, under torques and
+/// friction torques [N m] (eqs 2, 3). `offset` [m] is added to the mesh
 /// deflection (positive: pressed together).
-MarchState static_start(const GearPairSystem& system, double mean_pinion_speed,
-                        double pinion_friction_torque, double gear_friction_torque, double offset);
+MarchState static_start(const GearPairSystem& system, const Torques& torques,
+                        double mean_pinion_speed, double pinion_friction_torque,
+                        double gear_friction_torque, double offset);
 
 /// Marches mesh cycles with the event-exact integrator until the response repeats:
 ///  1. After each period the unknown torque takes up the momentum gained, its wind-up goes into
@@ -44,14 +43,13 @@ MarchState static_start(const GearPairSystem& system, double mean_pinion_speed,
 ///     differences, is not above 1; otherwise the march leaves it again.
 /// Periods of 1, 2, 3, 4 mesh cycles are tried; if none settles within the work limit, `settled` is
 /// false. Slow and robust: find_orbit() is tried first.
-SteadyState solve_steady_state(const PeriodicProblem& problem, const MarchState& start,
-                               const SteadyStateOptions& options);
+SteadyState solve_steady_state(const PeriodicProblem& problem, ContactSolver& contacts,
+                               const SectionPoint& start, const SteadyStateOptions& options);
 
 /// The largest modulus of the Floquet multipliers of a periodic orbit with friction in the loop,
-/// under the system's torques, by one march of the period and one for each state (forward
-/// differences): to some 1e-4 at a relative tolerance of 1e-8. `state`: at mesh phase 0; `period`
-/// [mesh cycles]. Adds to `work`. Throws as the march does.
-double marched_multiplier(const PeriodicProblem& problem, const MarchState& state, int period,
+/// by one march of the period and one for each state (forward differences): to some 1e-4 at a
+/// relative tolerance of 1e-8. Adds to `work`. Throws as the march does.
+double marched_multiplier(const PeriodicProblem& problem, const PeriodicOrbit& orbit,
                           const MarchOptions& march, SolverWork& work);
 
 }  // namespace tribodyn

@@ -51,7 +51,7 @@ struct Overlaps {
         y[kMeshApproach] = shift + (1 - t) * (1 - 2 * t) * p.start[kMeshApproach] +
                            4 * t * (1 - t) * p.middle[kMeshApproach] +
                            t * (2 * t - 1) * p.end[kMeshApproach];
-        system.kinematics(p.phase + t * p.length, y.data(), at);
+        system.kinematics(p.phase + t * p.length, p.regime, y.data(), at);
         length.push_back(side * at.transmission_error - system.dynamics().half_backlash);
         stiffness.push_back(at.mesh.mesh_stiffness);
       }
@@ -102,8 +102,8 @@ double middle_of_backlash(const GearPairSystem& system, const Swing& swing) {
 /// The cycle is affine in its start, so a step or two of Newton's method find what repeats.
 /// Wherever the gears float in the backlash they do so in the same way, and at any speed: of the
 /// corrections that these two freedoms leave open the shortest is taken.
-std::vector<OrbitPiece> float_freely(GearPairSystem& system, const MeshGrid& grid, double approach,
-                                     double mean_pinion_speed) {
+std::vector<OrbitPiece> float_freely(const GearPairSystem& system, const MeshGrid& grid,
+                                     double approach, double mean_pinion_speed) {
   constexpr int kCorrections = 3, kStates = kWheelSpeed;  // the seven of the section
   constexpr double kFreedom = 1e-6;                       // of the largest pivot
   const MeshData& mesh = system.mesh();
@@ -112,17 +112,15 @@ std::vector<OrbitPiece> float_freely(GearPairSystem& system, const MeshGrid& gri
   start[kPinionShaftSpeed] = start[kPinionSpeed] = mean_pinion_speed;
   start[kGearSpeed] = start[kWheelSpeed] =
       mean_pinion_speed * mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
-  system.set_torques({});
-  const MarchScales scales = march_scales(system, mean_pinion_speed);
+  const MarchScales scales = march_scales(system, {}, mean_pinion_speed);
   Rk4WithEvents march(system, scales, grid, 1, false, 1e-9, InstructionSet::kPortable);
   FrozenFriction none;
   std::vector<OrbitPiece> pieces;
   for (int i = 0;; ++i) {
-    system.regime = system.regime_of(0, start.data());
     MarchState end = start;
     Sensitivity sensitivity;
-    if (system.regime.side != 0 || !march.run(none, false, end, &sensitivity, &pieces) ||
-        march.events() > 0) {
+    if (system.regime_of(0, start.data()).side != 0 ||
+        !march.run({}, none, false, end, &sensitivity, &pieces) || march.events() > 0) {
       return {};
     }
     if (i == kCorrections) return pieces;
@@ -145,7 +143,7 @@ std::vector<OrbitPiece> float_freely(GearPairSystem& system, const MeshGrid& gri
 
 }  // namespace
 
-std::optional<MarchState> floating_start(GearPairSystem& system, const MeshGrid& grid,
+std::optional<MarchState> floating_start(const GearPairSystem& system, const MeshGrid& grid,
                                          double mean_pinion_speed) {
   const std::vector<OrbitPiece> pieces = float_freely(
       system, grid, middle_of_backlash(system, swing_of(system.mesh())), mean_pinion_speed);
@@ -153,9 +151,8 @@ std::optional<MarchState> floating_start(GearPairSystem& system, const MeshGrid&
   return pieces.front().start;
 }
 
-std::optional<MarchState> tapping_start(GearPairSystem& system, const MeshGrid& grid,
-                                        double mean_pinion_speed) {
-  const Torques torques = system.torques();
+std::optional<MarchState> tapping_start(const GearPairSystem& system, const Torques& torques,
+                                        const MeshGrid& grid, double mean_pinion_speed) {
   const MeshData& mesh = system.mesh();
   const DrivelineDynamics& d = system.dynamics();
   const Swing swing = swing_of(mesh);
@@ -174,7 +171,6 @@ std::optional<MarchState> tapping_start(GearPairSystem& system, const MeshGrid& 
     auto close = float_freely(system, grid, approach, mean_pinion_speed);
     if (!close.empty()) pieces = std::move(close);
   }
-  system.set_torques(torques);
   if (pieces.empty()) return std::nullopt;
 
   MarchState out = pieces.front().start;

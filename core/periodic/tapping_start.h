@@ -13,18 +13,16 @@ namespace tribodyn {
 ///  cycle
 ///     that repeats; of the corrections that its two freedoms leave open the shortest is taken.
 ///  2. The mesh approach is moved until the mesh stiffness times the overlap of the flanks carries
-///     the system's pinion torque in the mean over a mesh cycle.
+///     the pinion torque in the mean over a mesh cycle.
 ///
 /// Returns nullopt if that load holds the flanks together at all phases, if there is no pinion
-/// torque, or if the gears do not float: too little backlash. Leaves the system's torques; its
-/// regime changes.
-std::optional<MarchState> tapping_start(GearPairSystem& system, const MeshGrid& grid,
-                                        double mean_pinion_speed);
+/// torque, or if the gears do not float: too little backlash.
+std::optional<MarchState> tapping_start(const GearPairSystem& system, const Torques& torques,
+                                        const MeshGrid& grid, double mean_pinion_speed);
 
 /// The state at mesh phase 0 of gears that float in the middle of the backlash under no torque.
-/// Returns nullopt if they do not float: too little backlash. Sets the system's torques to zero;
-/// its regime changes.
-std::optional<MarchState> floating_start(GearPairSystem& system, const MeshGrid& grid,
+/// Returns nullopt if they do not float: too little backlash.
+std::optional<MarchState> floating_start(const GearPairSystem& system, const MeshGrid& grid,
                                          double mean_pinion_speed);
 
 }  // namespace tribodyn

@@ -18,30 +18,31 @@ constexpr double kMargin = 1.5;      // on the first-order change by inertia
 constexpr double kMostGrowth = 0.5;  // see InertialCorrection
 constexpr double kLeastForce = 0.4;  // smallest over mean mesh force
 
-/// Side of the flanks that carry.
-int side_of(const GearPairSystem& system) { return system.torques().pinion >= 0 ? 1 : -1; }
+/// The flanks that carry stay in contact.
+ContactRegime regime_under(const Torques& torques) { return {torques.pinion >= 0 ? 1 : -1, true}; }
 
 /// Equilibria at the nodes of a grid.
-std::vector<MarchState> equilibria(const GearPairSystem& system, const MeshGrid& grid,
+std::vector<MarchState> equilibria(const GearPairSystem& system, const Torques& torques,
+                                   ContactRegime regime, const MeshGrid& grid,
                                    FrozenFriction& friction, double speed) {
   const int last = 2 * grid.steps();
   std::vector<MarchState> out(last + 1);
   for (int n = 0; n <= last; ++n) {
     const double phase = static_cast<double>(n) / last;
-    out[n] = static_equilibrium(system, grid.at(n), phase, friction.at(phase), speed);
+    out[n] = static_equilibrium(system, torques, regime.side, grid.at(n), phase, friction.at(phase),
+                                speed);
   }
   return out;
 }
 
-std::vector<OrbitPiece> pieces_of(const GearPairSystem& system,
-                                  const std::vector<MarchState>& nodes) {
+std::vector<OrbitPiece> pieces_of(ContactRegime regime, const std::vector<MarchState>& nodes) {
   const int steps = static_cast<int>(nodes.size() / 2);
   std::vector<OrbitPiece> out(steps);
   for (int i = 0; i < steps; ++i) {
     out[i] = {static_cast<double>(i) / steps,
               1.0 / steps,
               2 * i,
-              system.regime,
+              regime,
               nodes[2 * i],
               nodes[2 * i + 1],
               nodes[2 * i + 2]};
@@ -50,19 +51,12 @@ std::vector<OrbitPiece> pieces_of(const GearPairSystem& system,
 }
 
 /// The unknown torque that the mean power asks for.
-double torque_of(const PeriodicProblem& problem, double loss) {
-  const GearPairSystem& system = problem.system;
-  const MeshData& mesh = system.mesh();
+double torque_of(const PeriodicProblem& problem, const Torques& torques, double loss) {
+  const MeshData& mesh = problem.system.mesh();
   const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
   const double drag = loss / problem.mean_pinion_speed;
-  return problem.solve_wheel_torque ? (system.torques().pinion - drag) / ratio
-                                    : ratio * system.torques().wheel + drag;
-}
-
-void set_unknown(const PeriodicProblem& problem, double torque) {
-  Torques torques = problem.system.torques();
-  (problem.solve_wheel_torque ? torques.wheel : torques.pinion) = torque;
-  problem.system.set_torques(torques);
+  return problem.solve_wheel_torque ? (torques.pinion - drag) / ratio
+                                    : ratio * torques.wheel + drag;
 }
 
 /// Extremes of a smooth periodic function by parabolas through its nodes; the last node repeats the
@@ -84,12 +78,13 @@ void extremes_of(const std::vector<double>& v, double& low, double& high) {
 }
 
 /// x at the nodes.
-std::vector<double> transmission_errors(const GearPairSystem& system, const MeshGrid& grid,
+std::vector<double> transmission_errors(const GearPairSystem& system, ContactRegime regime,
+                                        const MeshGrid& grid,
                                         const std::vector<MarchState>& nodes) {
   std::vector<double> out(nodes.size());
   Instant at;
   for (std::size_t n = 0; n < nodes.size(); ++n) {
-    system.kinematics(grid.at(static_cast<int>(n)), nodes[n].data(), at);
+    system.kinematics(grid.at(static_cast<int>(n)), regime, nodes[n].data(), at);
     out[n] = at.transmission_error;
   }
   return out;
@@ -101,9 +96,10 @@ class PicardIteration {
   explicit PicardIteration(const PeriodicProblem& problem)
       : problem_(problem),
         system_(problem.system),
-        friction_(problem.system, problem.contacts, problem.tolerance) {}
+        regime_(regime_under(problem.torques)),
+        friction_(problem.system, problem.contacts, problem.tally, problem.tolerance) {}
 
-  /// Iterates from the friction and the figures of `orbit` until the Picard error is below
+  /// Iterates from the torques, friction and figures of `orbit` until the Picard error is below
   /// `enough`.
   bool solve(const MeshGrid& grid, double enough, PeriodicOrbit& orbit) {
     constexpr int kMostIterations = 30;
@@ -132,26 +128,28 @@ class PicardIteration {
  private:
   bool evaluate(const MeshGrid& grid, PeriodicOrbit& orbit) {
     const double speed = problem_.mean_pinion_speed;
-    const std::vector<MarchState> nodes = equilibria(system_, grid, orbit.friction, speed);
-    orbit.pieces = pieces_of(system_, nodes);
-    if (!friction_.evaluate(grid, orbit.pieces, 0, orbit.friction, orbit.figures)) return false;
+    const std::vector<MarchState> nodes =
+        equilibria(system_, orbit.torques, regime_, grid, orbit.friction, speed);
+    orbit.pieces = pieces_of(regime_, nodes);
     OrbitFigures& f = orbit.figures;
-    extremes_of(transmission_errors(system_, grid, nodes), f.dte_minimum, f.dte_maximum);
-    f.torque = torque_of(problem_, f.loss_energy * speed / system_.cycle_angle());
-    set_unknown(problem_, f.torque);
-    orbit.torques = system_.torques();
+    if (!friction_.evaluate(grid, orbit.pieces, orbit.torques, 0, orbit.friction, f)) return false;
+    extremes_of(transmission_errors(system_, regime_, grid, nodes), f.dte_minimum, f.dte_maximum);
+    f.torque = torque_of(problem_, orbit.torques, f.loss_energy * speed / system_.cycle_angle());
+    problem_.unknown(orbit.torques) = f.torque;
     orbit.state = nodes.front();
     return true;
   }
 
   const PeriodicProblem& problem_;
-  GearPairSystem& system_;
+  const GearPairSystem& system_;
+  ContactRegime regime_;
   OrbitFriction friction_;
   double contraction_ = 0;  // of the error by one iteration; 0: none made yet
 };
 
 /// What the equilibria at a grid's nodes ask of the driveline. `friction`: what holds them.
-ImposedMotion imposed_motion(const GearPairSystem& system, const MeshGrid& grid,
+ImposedMotion imposed_motion(const GearPairSystem& system, const Torques& torques,
+                             ContactRegime regime, const MeshGrid& grid,
                              const std::vector<MarchState>& nodes, FrozenFriction& friction) {
   const std::size_t count = nodes.size() - 1;
   ImposedMotion out;
@@ -160,12 +158,12 @@ ImposedMotion imposed_motion(const GearPairSystem& system, const MeshGrid& grid,
   Instant at;
   for (std::size_t n = 0; n < count; ++n) {
     const double phase = static_cast<double>(n) / static_cast<double>(count);
-    system.kinematics(grid.at(static_cast<int>(n)), nodes[n].data(), at);
+    system.kinematics(grid.at(static_cast<int>(n)), regime, nodes[n].data(), at);
     out.mesh_approach[n] = nodes[n][kMeshApproach];
     out.transmission_error[n] = at.transmission_error;
     out.mesh_stiffness[n] = at.mesh.mesh_stiffness;
     out.gear_torque[n] = at.mesh.gear_contact_radius * at.mesh_force +
-                         friction.at(phase).gear * std::abs(at.mesh_force) - system.torques().wheel;
+                         friction.at(phase).gear * std::abs(at.mesh_force) - torques.wheel;
     if (!out.pinion_torque.empty()) out.pinion_torque[n] = at.parametric_torque();
   }
   return out;
@@ -193,14 +191,14 @@ std::vector<MarchState> corrected(const GearPairSystem& system, const MeshGrid& 
 }
 
 /// Power that the dampers and the torques that eq 2 leaves out take, the mean of it [W].
-double other_losses(const GearPairSystem& system, const MeshGrid& grid,
+double other_losses(const GearPairSystem& system, ContactRegime regime, const MeshGrid& grid,
                     const std::vector<MarchState>& nodes) {
   const std::size_t count = nodes.size() - 1;
   double sum = 0;
   Instant at;
   for (std::size_t n = 0; n < count; ++n) {
     const MarchState& y = nodes[n];
-    system.kinematics(grid.at(static_cast<int>(n)), y.data(), at);
+    system.kinematics(grid.at(static_cast<int>(n)), regime, y.data(), at);
     sum += at.damper_force * at.transmission_velocity +
            system.dynamics().pinion_shaft_damping * square(y[kPinionShaftSpeed] - y[kPinionSpeed]);
     if (!system.options().energy_consistent) sum += at.parametric_torque() * y[kPinionSpeed];
@@ -209,13 +207,13 @@ double other_losses(const GearPairSystem& system, const MeshGrid& grid,
 }
 
 /// Smallest force at the nodes over the mean one.
-double least_force(const GearPairSystem& system, const MeshGrid& grid,
+double least_force(const GearPairSystem& system, ContactRegime regime, const MeshGrid& grid,
                    const std::vector<MarchState>& nodes) {
   double low = 1e300, sum = 0;
   Instant at;
   for (std::size_t n = 0; n + 1 < nodes.size(); ++n) {
-    system.kinematics(grid.at(static_cast<int>(n)), nodes[n].data(), at);
-    const double force = system.regime.side * at.mesh_force;
+    system.kinematics(grid.at(static_cast<int>(n)), regime, nodes[n].data(), at);
+    const double force = regime.side * at.mesh_force;
     low = std::min(low, force);
     sum += force;
   }
@@ -224,14 +222,14 @@ double least_force(const GearPairSystem& system, const MeshGrid& grid,
 
 }  // namespace
 
-MarchState static_equilibrium(const GearPairSystem& system, const MeshPhase& at, double phase,
-                              const FrictionArms& friction, double speed) {
+MarchState static_equilibrium(const GearPairSystem& system, const Torques& torques, int side,
+                              const MeshPhase& at, double phase, const FrictionArms& friction,
+                              double speed) {
   const MeshData& mesh = system.mesh();
-  const double side = system.regime.side;
   const double lag = mesh.gear_teeth() / mesh.mean_gear_contact_radius();
   const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
   const MeshFunctions& p = at.pinion;
-  const double force = system.torques().pinion / (p.pinion_contact_radius - side * friction.pinion);
+  const double force = torques.pinion / (p.pinion_contact_radius - side * friction.pinion);
   const double approach = side * system.dynamics().half_backlash + force / p.mesh_stiffness +
                           p.static_transmission_error - system.dynamics().half_backlash;
   MarchState y{};
@@ -247,17 +245,16 @@ MarchState static_equilibrium(const GearPairSystem& system, const MeshPhase& at,
   y[kGearSpeed] =
       (f.pinion_contact_radius - f.static_transmission_error_slope) * speed / f.gear_contact_radius;
   y[kWheelSpeed] = ratio * speed;
-  y[kPinionShaftTwist] = system.torques().pinion / system.dynamics().pinion_shaft_stiffness;
-  y[kGearShaftTwist] = system.torques().wheel / system.dynamics().gear_shaft_stiffness;
+  y[kPinionShaftTwist] = torques.pinion / system.dynamics().pinion_shaft_stiffness;
+  y[kGearShaftTwist] = torques.wheel / system.dynamics().gear_shaft_stiffness;
   return y;
 }
 
 std::optional<PeriodicOrbit> solve_quasi_static(const PeriodicProblem& problem) {
-  GearPairSystem& system = problem.system;
-  system.regime = {side_of(system), true};
   PicardIteration iteration(problem);
   PeriodicOrbit best;
-  const StepSequence sequence(system.mesh().intervals(),
+  best.torques = problem.torques;
+  const StepSequence sequence(problem.system.mesh().intervals(),
                               problem.tolerance < kLooseTolerance ? 24 : 12);
   const auto after = [&](int steps) {
     return sequence.after(steps, best.estimated_error / problem.tolerance);
@@ -277,35 +274,37 @@ std::optional<PeriodicOrbit> solve_quasi_static(const PeriodicProblem& problem) 
     const bool enough_steps = !first && best.estimated_error <= problem.tolerance;
     if (enough_steps || after(steps) > kMostStepsPerCycle) break;
   }
-  best.regime = system.regime;
   return best;
 }
 
 double quasi_static_model_error(const PeriodicProblem& problem, const PeriodicOrbit& solution) {
   constexpr double kUnknown = std::numeric_limits<double>::infinity();
-  GearPairSystem& system = problem.system;
+  const GearPairSystem& system = problem.system;
+  const Torques& torques = solution.torques;
+  const ContactRegime regime = solution.pieces.front().regime;
   const double speed = problem.mean_pinion_speed;
   const MeshGrid& grid = problem.grids.with_steps(solution.steps_per_mesh_cycle);
   FrozenFriction friction = solution.friction;
-  const std::vector<MarchState> still = equilibria(system, grid, friction, speed);
-  const ImposedMotion motion = imposed_motion(system, grid, still, friction);
+  const std::vector<MarchState> still = equilibria(system, torques, regime, grid, friction, speed);
+  const ImposedMotion motion = imposed_motion(system, torques, regime, grid, still, friction);
   const InertialCorrection change = inertial_correction(system, speed, motion);
   if (!(change.growth < kMostGrowth)) return kUnknown;
   if (parametric_resonance_possible(system, speed, motion.mesh_stiffness)) return kUnknown;
   const std::vector<MarchState> moving = corrected(system, grid, still, change);
   const double unresolved_force = change.unresolved * system.mesh().mean_mesh_stiffness() *
                                   system.mesh().mean_pinion_contact_radius() /
-                                  std::abs(system.torques().pinion);
-  if (!(least_force(system, grid, moving) - unresolved_force > kLeastForce)) return kUnknown;
+                                  std::abs(torques.pinion);
+  if (!(least_force(system, regime, grid, moving) - unresolved_force > kLeastForce))
+    return kUnknown;
 
-  OrbitFriction together(system, problem.contacts, problem.tolerance);
+  OrbitFriction together(system, problem.contacts, problem.tally, problem.tolerance);
   OrbitFigures figures;
-  if (!together.evaluate(grid, pieces_of(system, moving), 0, friction, figures)) {
-    system.take_refusal();
+  if (!together.evaluate(grid, pieces_of(regime, moving), torques, 0, friction, figures)) {
+    problem.tally.take_refusal();
     return kUnknown;
   }
   const double loss = figures.loss_energy * speed / system.cycle_angle();
-  figures.torque = torque_of(problem, loss + other_losses(system, grid, moving));
+  figures.torque = torque_of(problem, torques, loss + other_losses(system, regime, grid, moving));
   const double first_order = figures.distance(solution.figures);
   const double size = std::max(std::abs(figures.dte_minimum), std::abs(figures.dte_maximum));
   return kMargin * first_order / (1 - change.growth) + change.unresolved / size;
@@ -314,16 +313,17 @@ double quasi_static_model_error(const PeriodicProblem& problem, const PeriodicOr
 bool passes_quasi_static_screen(const PeriodicProblem& problem) {
   constexpr int kFewSteps = 4;  // three harmonics
   constexpr double kDoubt = 4;  // extremes move by less than the largest correction
-  GearPairSystem& system = problem.system;
+  const GearPairSystem& system = problem.system;
+  const Torques& torques = problem.torques;
   MeshGrids& grids = problem.grids;
-  if (system.torques().pinion == 0) return false;
-  system.regime = {side_of(system), true};
+  if (torques.pinion == 0) return false;
+  const ContactRegime regime = regime_under(torques);
   const double speed = problem.mean_pinion_speed;
   const auto moved_without_friction = [&](const MeshGrid& grid, ImposedMotion& motion,
                                           std::vector<MarchState>& still) {
     FrozenFriction none;
-    still = equilibria(system, grid, none, speed);
-    motion = imposed_motion(system, grid, still, none);
+    still = equilibria(system, torques, regime, grid, none, speed);
+    motion = imposed_motion(system, torques, regime, grid, still, none);
     motion.tail = false;
     return inertial_correction(system, speed, motion);
   };
@@ -341,19 +341,17 @@ bool passes_quasi_static_screen(const PeriodicProblem& problem) {
   const InertialCorrection more = moved_without_friction(grid, motion, still);
   if (!(more.growth < kMostGrowth)) return false;
   double low = 0, high = 0, moved_low = 0, moved_high = 0;
-  extremes_of(transmission_errors(system, grid, still), low, high);
-  extremes_of(transmission_errors(system, grid, corrected(system, grid, still, more)), moved_low,
-              moved_high);
+  extremes_of(transmission_errors(system, regime, grid, still), low, high);
+  extremes_of(transmission_errors(system, regime, grid, corrected(system, grid, still, more)),
+              moved_low, moved_high);
   const double moved = std::max(std::abs(moved_low - low), std::abs(moved_high - high));
   return kMargin * moved / (1 - more.growth) < kDoubt * problem.tolerance * size / 2;
 }
 
 bool QuasiStaticScreen::passes(const PeriodicProblem& problem) {
-  GearPairSystem& system = problem.system;
-  const std::array<double, 5> where = {problem.mean_pinion_speed, system.torques().pinion,
-                                       system.torques().wheel, problem.tolerance,
+  const std::array<double, 5> where = {problem.mean_pinion_speed, problem.torques.pinion,
+                                       problem.torques.wheel, problem.tolerance,
                                        static_cast<double>(problem.solve_wheel_torque)};
-  system.regime = {side_of(system), true};
   if (const auto known = known_.find(where); known != known_.end()) return known->second;
   if (known_.size() >= kMost) known_.clear();
   return known_[where] = passes_quasi_static_screen(problem);

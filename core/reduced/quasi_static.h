@@ -20,14 +20,15 @@ namespace tribodyn {
 // to the inertia and dampers that it neglects (linear_response.h).
 
 /// The orbit's pieces hold the equilibria; it has no map. Two grids or more, until the estimate is
-/// within the tolerance or steps are finest. Sets the system's torques and regime. Returns nullopt
-/// if a contact is refused (the system has the reason) or the iteration does not converge.
+/// within the tolerance or steps are finest. Returns nullopt if a contact is refused (the tally has
+/// the reason) or the iteration does not converge.
 std::optional<PeriodicOrbit> solve_quasi_static(const PeriodicProblem& problem);
 
-/// The static equilibrium at a mesh phase [cycles] and a pinion speed [rad/s] under the system's
-/// torques and friction in proportion to the load, on the flanks of the system's regime.
-MarchState static_equilibrium(const GearPairSystem& system, const MeshPhase& at, double phase,
-                              const FrictionArms& friction, double speed);
+/// The static equilibrium at a mesh phase [cycles] and a pinion speed [rad/s] under torques and
+/// friction in proportion to the load, on the flanks of a side.
+MarchState static_equilibrium(const GearPairSystem& system, const Torques& torques, int side,
+                              const MeshPhase& at, double phase, const FrictionArms& friction,
+                              double speed);
 
 /// The relative distance of the quasi-static figures from those of the full model, as
 /// PointResult::estimated_relative_error means it. Inertia and dampers are added to first order

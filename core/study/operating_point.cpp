@@ -32,7 +32,7 @@ Response solve_response(const PointProblem& problem, const Scene& scene,
       return {quasi_static_result(problem, *chosen), true};
     }
   }
-  std::optional<AperiodicMotion> aperiodic;
+  std::optional<SectionPoint> aperiodic;
   if (options.method != SteadyStateMethod::kMarch) {
     if (auto shot = solve_by_shooting(problem, start, from, history, aperiodic)) {
       PointResult& result = shot->result;
@@ -63,10 +63,8 @@ PointResult solve_from(PreparedScene& prepared, const OperatingCondition& condit
       at_data_torque.emplace(at_torque(scene.gear_set, data_torque), scene.solid, scene.options);
     }
     PreparedGearSet& gear_set = at_data_torque ? *at_data_torque : prepared.gear_set();
-    GearPairSystem system(gear_set.mesh(), prepared.contacts().model(),
-                          gear_set.gear_set().dynamics, scene.options);
-    system.set_torques(target.torques);
-    const PointProblem problem{system, prepared.contacts(), gear_set, target, options};
+    ContactTally tally;
+    const PointProblem problem{prepared.contacts(), gear_set, target, options, tally};
     Response response = solve_response(problem, scene, condition, start, from, history);
     PointResult& result = response.result;
     result.statistics += spent;

@@ -31,9 +31,15 @@ OperatingTarget target_of(const Scene& scene, const OperatingCondition& c) {
 }
 
 PeriodicProblem PointProblem::periodic(double tolerance) const {
-  PeriodicProblem out{
-      system,    contacts, gear_set.grids(), target.mean_pinion_speed, target.solve_wheel_torque,
-      tolerance, {}};
+  PeriodicProblem out{system(),
+                      contacts,
+                      gear_set.grids(),
+                      tally,
+                      target.torques,
+                      target.mean_pinion_speed,
+                      target.solve_wheel_torque,
+                      tolerance,
+                      {}};
   if (options.progress) {
     out.interrupted = [&progress = options.progress] { return !progress(0); };
   }

@@ -21,12 +21,13 @@ OperatingTarget target_of(const Scene& scene, const OperatingCondition& conditio
 
 /// One operating point, as each way of solving it takes it.
 struct PointProblem {
-  GearPairSystem& system;
   const FlankContactBatch& contacts;
   PreparedGearSet& gear_set;
   const OperatingTarget& target;
   const PointOptions& options;
+  ContactTally& tally;
 
+  const GearPairSystem& system() const { return gear_set.system(); }
   /// Its periodic response, to a tolerance. The options must outlive it.
   PeriodicProblem periodic(double tolerance) const;
 };

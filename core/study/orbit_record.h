@@ -7,13 +7,13 @@
 namespace tribodyn {
 
 /// Records the solved pieces of a periodic orbit: integrals by Simpson's rule over each piece,
-/// extremes, openings of the gap. Leaves the system in the regime at the section.
-void record_orbit(GearPairSystem& system, const PeriodicOrbit& orbit, const SolvedPieces& solved,
-                  ResponseRecord& record);
+/// extremes, openings of the gap.
+void record_orbit(const GearPairSystem& system, const PeriodicOrbit& orbit,
+                  const SolvedPieces& solved, ResponseRecord& record);
 
 /// Samples the history: states by the cubic through the ends of a piece with their rates, friction
 /// solved at each; then copies of the period.
-void sample_orbit(GearPairSystem& system, const PeriodicOrbit& orbit, const SolvedPieces& solved,
-                  HistorySampler& history);
+void sample_orbit(const GearPairSystem& system, const PeriodicOrbit& orbit,
+                  const SolvedPieces& solved, ContactSolver& contacts, HistorySampler& history);
 
 }  // namespace tribodyn

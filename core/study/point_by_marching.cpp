@@ -18,7 +18,7 @@ namespace {
 
 /// How a point is marched.
 struct MarchPlan {
-  MarchState start{};  ///< at mesh phase 0
+  SectionPoint start;
   int first_period = 1;
   int maximum_mesh_cycles = 0;               ///< of the search for the steady state
   std::optional<RangeWarning> why_so_short;  ///< why that is less than the options say
@@ -55,14 +55,13 @@ void refuse_what_is_too_slow(const GearPairSystem& system, const OperatingTarget
                     "its error, and method = MARCH marches however long");
 }
 
-/// Also sets the torques that the march starts with.
 MarchPlan plan_march(const PointProblem& problem, PointStart start,
                      const std::optional<CarriedState>& from,
-                     const std::optional<AperiodicMotion>& aperiodic) {
+                     const std::optional<SectionPoint>& aperiodic) {
   constexpr int kRattleCycles = 60;  // to leave the response that repels
   constexpr int kTapCycles = 150;    // from a start that is near a response, if there is one
   constexpr int kFloatSteps = 96;    // a mesh cycle
-  GearPairSystem& system = problem.system;
+  const GearPairSystem& system = problem.system();
   const OperatingTarget& target = problem.target;
   const PointOptions& options = problem.options;
   MarchPlan out;
@@ -70,8 +69,7 @@ MarchPlan plan_march(const PointProblem& problem, PointStart start,
   const bool may_shorten = options.method == SteadyStateMethod::kAutomatic;
   if (may_shorten) refuse_what_is_too_slow(system, target, options);
   if (may_shorten && aperiodic) {
-    system.set_torques(aperiodic->torques);
-    out.start = aperiodic->start;
+    out.start = *aperiodic;
     out.maximum_mesh_cycles = std::min(out.maximum_mesh_cycles, kRattleCycles);
     out.why_so_short =
         RangeWarning{"RATTLES",
@@ -83,7 +81,7 @@ MarchPlan plan_march(const PointProblem& problem, PointStart start,
   if (may_shorten && !from && target.solve_wheel_torque && target.torques.pinion == 0) {
     if (const auto floating = floating_start(
             system, problem.gear_set.grids().with_steps(kFloatSteps), target.mean_pinion_speed)) {
-      out.start = *floating;
+      out.start = system.at_section(*floating, {});
       out.maximum_mesh_cycles = 0;
       out.why_so_short = RangeWarning{"FLANKS_FLOAT",
                                       "no pinion torque holds the flanks together: they float in "
@@ -91,16 +89,16 @@ MarchPlan plan_march(const PointProblem& problem, PointStart start,
       return out;
     }
   }
-  system.set_torques(target.torques);
   if (from) {
-    out.start = carried_start(system, *from, target.mean_pinion_speed);
+    out.start = system.at_section(carried_start(system, *from, target), target.torques);
     out.first_period = std::max(1, from->period);
     return out;
   }
   if (may_shorten && start == PointStart::kQuasiStatic) {
-    if (const auto tapping = tapping_start(system, problem.gear_set.grids().with_steps(kFloatSteps),
-                                           target.mean_pinion_speed)) {
-      out.start = *tapping;
+    if (const auto tapping =
+            tapping_start(system, target.torques, problem.gear_set.grids().with_steps(kFloatSteps),
+                          target.mean_pinion_speed)) {
+      out.start = system.at_section(*tapping, target.torques);
       out.maximum_mesh_cycles = std::min(out.maximum_mesh_cycles, kTapCycles);
       out.why_so_short =
           RangeWarning{"RATTLES",
@@ -115,37 +113,37 @@ MarchPlan plan_march(const PointProblem& problem, PointStart start,
 }
 
 /// Marches a steady state once more over `cycles` mesh cycles and records it; goes on beyond them
-/// as far as the history asks. Leaves the system at the end of the march, with the steady state's
-/// torques. Throws as march_mesh_cycle does, and Cancelled when `progress` returns false.
-void record_response(GearPairSystem& system, const SteadyState& steady, int cycles,
-                     const MarchOptions& options, const MarchScales& scales, ResponseRecord& record,
-                     HistorySampler& history, SolverWork& work,
-                     const std::function<bool(double)>& progress) {
+/// as far as the history asks. Returns the regime at the end of the record. Throws as
+/// march_mesh_cycle does, and Cancelled when `progress` returns false.
+ContactRegime record_response(const GearPairSystem& system, ContactSolver& contacts,
+                              const SteadyState& steady, int cycles, const MarchOptions& options,
+                              const MarchScales& scales, ResponseRecord& record,
+                              HistorySampler& history, SolverWork& work,
+                              const std::function<bool(double)>& progress) {
   using Phases = PhaseSystem<true>;
   constexpr int kSize = Phases::kSize;
   Phases::State y{};
   std::copy(steady.state.begin(), steady.state.end(), y.begin());
   y[kTime] = y[kLossWork] = y[kLossShareSquared] = 0;
-  system.regime = steady.regime;
-  system.set_torques(steady.torques);
-  record.starts_in_gap = system.regime.side == 0;
+  ContactRegime regime = steady.regime, end_regime = regime;
+  record.starts_in_gap = regime.side == 0;
 
-  GearPairSystem probe = system;  // evaluates between the march's own evaluations
-  const long solved_before = probe.contact_solutions();
   std::array<Instant, ResponseRecord::kSamples> samples;
   int cycle = 0;
   bool recording = true;
   const Phases* place = nullptr;  // of the cycle that is marched
   const auto on_step = [&](const MarchStep<kSize>& step) {
-    probe.regime = system.regime;
-    probe.set_interval(system.interval());
+    // Evaluates between the march's own evaluations.
+    const auto evaluate = [&](double phase, const Phases::State& at, Instant& out) {
+      system.evaluate(phase, place->interval(), place->regime(), at.data(), contacts, out);
+    };
     if (recording) {
       for (int i = 0; i < ResponseRecord::kSamples; ++i) {
         const double theta = static_cast<double>(i) / (ResponseRecord::kSamples - 1);
         const auto at = i == 0                              ? step.from
                         : i + 1 == ResponseRecord::kSamples ? step.to
                                                             : step.at(theta);
-        probe.evaluate(place->phase(step.start + theta * step.length), at.data(), samples[i]);
+        evaluate(place->phase(step.start + theta * step.length), at, samples[i]);
       }
       record.add_step(samples);
     }
@@ -154,13 +152,13 @@ void record_response(GearPairSystem& system, const SteadyState& steady, int cycl
       const double inside = history.next_phase() - cycle;
       const double theta = (place->progress(inside) - step.start) / step.length;
       const auto at = step.at(std::clamp(theta, 0.0, 1.0));
-      probe.evaluate(inside, at.data(), samples[0]);
-      history.add(cycle + inside, at.data(), samples[0], system.torques());
+      evaluate(inside, at, samples[0]);
+      history.add(cycle + inside, at.data(), samples[0], steady.torques);
     }
   };
   for (; cycle < cycles || history.wanted(); ++cycle) {
     if (progress && !progress(1)) throw Cancelled();
-    Phases phases(system, scales);
+    Phases phases(system, steady.torques, scales, regime, contacts);
     place = &phases;
     std::vector<GapEvent> events;
     phases.gap_events = &events;
@@ -168,7 +166,7 @@ void record_response(GearPairSystem& system, const SteadyState& steady, int cycl
     DormandPrinceWithEvents<Phases> march(phases, options);
     double phase = 0;
     march.run(phase, y, 1.0, on_step);
-    throw_if_refused(system);
+    regime = phases.regime();
     work += march.work();
     ++work.mesh_cycles;
     if (recording) {
@@ -179,10 +177,10 @@ void record_response(GearPairSystem& system, const SteadyState& steady, int cycl
     }
     if (cycle + 1 == cycles) {
       std::copy(y.begin(), y.end(), record.integrals.begin());
-      record.end_regime = system.regime;
+      end_regime = regime;
     }
   }
-  work.contact_solutions += probe.contact_solutions() - solved_before;
+  return end_regime;
 }
 
 }  // namespace
@@ -190,12 +188,14 @@ void record_response(GearPairSystem& system, const SteadyState& steady, int cycl
 PointResult solve_by_marching(const PointProblem& problem, PointStart start,
                               const std::optional<CarriedState>& from,
                               const HistoryRequest& history_request,
-                              const std::optional<AperiodicMotion>& aperiodic) {
+                              const std::optional<SectionPoint>& aperiodic) {
   constexpr double kAccuracyOfBatch = 1e-9;  // contacts solved together agree to 1e-10
-  GearPairSystem& system = problem.system;
+  const GearPairSystem& system = problem.system();
   const OperatingTarget& target = problem.target;
   const PointOptions& options = problem.options;
-  if (march_tolerance(options) >= kAccuracyOfBatch) system.solve_together(&problem.contacts);
+  ContactSolver contacts = march_tolerance(options) >= kAccuracyOfBatch
+                               ? ContactSolver(problem.contacts, problem.tally)
+                               : ContactSolver(problem.contacts.model(), problem.tally);
   const MarchPlan plan = plan_march(problem, start, from, aperiodic);
   const PeriodicProblem periodic =
       problem.periodic(std::min(0.1 * options.tolerance, options.march_settling_tolerance));
@@ -211,7 +211,7 @@ PointResult solve_by_marching(const PointProblem& problem, PointStart start,
     };
     march.march.interrupted = [&] { return !options.progress(reported); };
   }
-  const SteadyState steady = solve_steady_state(periodic, plan.start, march);
+  const SteadyState steady = solve_steady_state(periodic, contacts, plan.start, march);
 
   PointResult out = empty_result(target, PointModel::kFull);
   out.settled = steady.settled;
@@ -225,20 +225,19 @@ PointResult solve_by_marching(const PointProblem& problem, PointStart start,
   out.statistics.periodicity_defect = steady.defect;
   out.statistics.largest_multiplier = steady.largest_multiplier;
   out.recorded_mesh_cycles = steady.settled ? steady.period : options.recorded_mesh_cycles;
-  const MarchScales scales = march_scales(system, target.mean_pinion_speed);
+  const MarchScales scales = march_scales(system, steady.torques, target.mean_pinion_speed);
   ResponseRecord record(scales.torque / system.mesh().mean_pinion_contact_radius());
   HistorySampler history(history_request);
   // A speed that is wrong within its tolerance counts I omega times in the energy balance.
   MarchOptions sharper = march.march;
   sharper.relative_tolerance = std::max(0.01 * march.march.relative_tolerance, 1e-12);
-  record_response(system, steady, out.recorded_mesh_cycles, sharper, scales, record, history,
-                  out.statistics, options.progress);
-  out.statistics.contact_solutions += system.contact_solutions();
-  record.fill(system.torques(), out.recorded_mesh_cycles, steady.settled, out);
-  system.regime = record.end_regime;
-  const double end_energy = system.stored_energy(0, record.integrals.data());
-  system.regime = steady.regime;
-  out.power_balance.stored = end_energy - system.stored_energy(0, steady.state.data());
+  const ContactRegime end_regime =
+      record_response(system, contacts, steady, out.recorded_mesh_cycles, sharper, scales, record,
+                      history, out.statistics, options.progress);
+  out.statistics.contact_solutions = problem.tally.solutions;
+  record.fill(steady.torques, out.recorded_mesh_cycles, steady.settled, out);
+  out.power_balance.stored = system.stored_energy(0, end_regime, record.integrals.data()) -
+                             system.stored_energy(0, steady.regime, steady.state.data());
   out.section_state = system.to_section(steady.state.data());
   out.history = history.take();
   if (plan.why_so_short && !steady.settled) out.warnings.push_back(*plan.why_so_short);

@@ -14,6 +14,6 @@ namespace tribodyn {
 PointResult solve_by_marching(const PointProblem& problem, PointStart start,
                               const std::optional<CarriedState>& from,
                               const HistoryRequest& history,
-                              const std::optional<AperiodicMotion>& aperiodic);
+                              const std::optional<SectionPoint>& aperiodic);
 
 }  // namespace tribodyn

@@ -14,43 +14,44 @@ namespace tribodyn {
 
 SolvedPieces fill_from_orbit(const PointProblem& problem, const PeriodicOrbit& orbit,
                              PointResult& out) {
-  GearPairSystem& system = problem.system;
+  const GearPairSystem& system = problem.system();
   out.settled = true;
   out.period_in_mesh_cycles = out.recorded_mesh_cycles = orbit.period;
-  system.set_torques(orbit.torques);
   SolvedPieces solved =
       solved_pieces(system, problem.gear_set.grids().with_steps(orbit.steps_per_mesh_cycle),
-                    orbit.pieces, *orbit.contacts);
-  ResponseRecord record(march_scales(system, problem.target.mean_pinion_speed).torque /
-                        system.mesh().mean_pinion_contact_radius());
+                    orbit.pieces, *orbit.contacts, problem.contacts.model());
+  ResponseRecord record(
+      march_scales(system, orbit.torques, problem.target.mean_pinion_speed).torque /
+      system.mesh().mean_pinion_contact_radius());
   record_orbit(system, orbit, solved, record);
-  record.fill(system.torques(), orbit.period, true, out);
-  out.power_balance.stored = system.stored_energy(0, orbit.pieces.back().end.data()) -
-                             system.stored_energy(0, orbit.pieces.front().start.data());
-  out.section_state = system.to_section(orbit.pieces.front().start.data());
-  out.statistics.contact_solutions = system.contact_solutions();
+  record.fill(orbit.torques, orbit.period, true, out);
+  const OrbitPiece& first = orbit.pieces.front();
+  out.power_balance.stored = system.stored_energy(0, first.regime, orbit.pieces.back().end.data()) -
+                             system.stored_energy(0, first.regime, first.start.data());
+  out.section_state = system.to_section(first.start.data());
+  out.statistics.contact_solutions = problem.tally.solutions;
   return solved;
 }
 
 std::optional<OrbitSearch> search_from(const PointProblem& problem, PointStart start,
                                        const std::optional<CarriedState>& from) {
-  const GearPairSystem& system = problem.system;
+  const GearPairSystem& system = problem.system();
   const OperatingTarget& target = problem.target;
   const PointOptions& options = problem.options;
-  if (system.torques().pinion == 0) return std::nullopt;  // nothing holds the flanks together
+  if (target.torques.pinion == 0) return std::nullopt;  // nothing holds the flanks together
   OrbitSearch search;
   search.maximum_mesh_cycles = options.maximum_mesh_cycles;
   search.allow_transient_march = options.method != SteadyStateMethod::kShooting;
   if (from) {
     if (from->period == 0) return std::nullopt;
-    search.start = carried_start(system, *from, target.mean_pinion_speed);
+    search.start = carried_start(system, *from, target);
     search.period = from->period;
     search.try_contact_first = !from->contact_loss;
     search.few_cycles = from->contact_loss ? 0 : search.few_cycles;  // it is near
   } else {
     const bool loud = start == PointStart::kLargeVibration;
-    search.start =
-        static_start(system, target.mean_pinion_speed, 0, 0, loud ? kLargeVibrationDeflection : 0);
+    search.start = static_start(system, target.torques, target.mean_pinion_speed, 0, 0,
+                                loud ? kLargeVibrationDeflection : 0);
     search.try_contact_first = !loud;
   }
   return search;
@@ -58,14 +59,14 @@ std::optional<OrbitSearch> search_from(const PointProblem& problem, PointStart s
 
 std::optional<OrbitSensitivity> sensitivity_of(const PointProblem& problem,
                                                const PeriodicOrbit& orbit) {
-  if (problem.system.options().load_dependent_mesh_data) return std::nullopt;
+  if (problem.system().options().load_dependent_mesh_data) return std::nullopt;
   return orbit_sensitivity(problem.periodic(problem.options.tolerance), orbit);
 }
 
 std::optional<ShotPoint> solve_by_shooting(const PointProblem& problem, PointStart start,
                                            const std::optional<CarriedState>& from,
                                            const HistoryRequest& history_request,
-                                           std::optional<AperiodicMotion>& aperiodic) {
+                                           std::optional<SectionPoint>& aperiodic) {
   const std::optional<OrbitSearch> search = search_from(problem, start, from);
   if (!search) return std::nullopt;
   SolverWork work;
@@ -79,11 +80,12 @@ std::optional<ShotPoint> solve_by_shooting(const PointProblem& problem, PointSta
   out.estimated_relative_error = known_error(orbit->estimated_error);
   const SolvedPieces solved = fill_from_orbit(problem, *orbit, out);
   HistorySampler history(history_request);
-  sample_orbit(problem.system, *orbit, solved, history);
+  ContactSolver contacts(problem.contacts.model(), problem.tally);
+  sample_orbit(problem.system(), *orbit, solved, contacts, history);
   out.history = history.take();
   if (problem.options.sensitivities) shot.sensitivity = sensitivity_of(problem, *orbit);
   static_cast<SolverWork&>(out.statistics) = work;
-  out.statistics.contact_solutions = problem.system.contact_solutions();
+  out.statistics.contact_solutions = problem.tally.solutions;
   out.statistics.periodicity_defect = orbit->defect;
   out.statistics.largest_multiplier = orbit->multiplier_with_friction
                                           ? *orbit->multiplier_with_friction
@@ -93,7 +95,6 @@ std::optional<ShotPoint> solve_by_shooting(const PointProblem& problem, PointSta
 
 void refuse_shooting(const PointProblem& problem) {
   const OperatingTarget& target = problem.target;
-  problem.system.set_torques(target.torques);
   point_start(problem, PointStart::kQuasiStatic);
   throw Refusal(
       "NOT_FOUND_BY_SHOOTING",

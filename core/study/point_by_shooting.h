@@ -34,7 +34,7 @@ struct ShotPoint {
 std::optional<ShotPoint> solve_by_shooting(const PointProblem& problem, PointStart start,
                                            const std::optional<CarriedState>& from,
                                            const HistoryRequest& history,
-                                           std::optional<AperiodicMotion>& aperiodic);
+                                           std::optional<SectionPoint>& aperiodic);
 
 /// Throws Refusal NOT_FOUND_BY_SHOOTING, or what a march would throw at its start: the refusal of a
 /// contact.

@@ -12,10 +12,10 @@ inline constexpr double kLargeVibrationDeflection = 60e-6;
 /// The quasi-static response at mesh phase 0 for PointStart::kQuasiStatic, whose torques leave
 /// little for the march to settle; with kLargeVibrationDeflection more for kLargeVibration. Throws
 /// the refusal of a contact.
-MarchState point_start(const PointProblem& problem, PointStart start);
+SectionPoint point_start(const PointProblem& problem, PointStart start);
 
 /// The neighbour's steady state, its wind-up and speeds moved to this point.
 MarchState carried_start(const GearPairSystem& system, const CarriedState& from,
-                         double mean_pinion_speed);
+                         const OperatingTarget& target);
 
 }  // namespace tribodyn

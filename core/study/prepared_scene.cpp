@@ -18,6 +18,7 @@ PreparedGearSet::PreparedGearSet(const GearSet& gear_set, const Solid& solid,
                                  const ModelOptions& options)
     : gear_set_(checked(gear_set)),
       mesh_(gear_set_),
+      system_(mesh_, gear_set_.dynamics, options),
       grids_(mesh_, gear_set_.dynamics.half_backlash,
              reduced_modulus(solid.youngs_modulus, solid.poissons_ratio), options) {}
 

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/contact/flank_contact_batch.h"
+#include "core/driveline/gear_pair_system.h"
 #include "core/integrate/mesh_grid.h"
 #include "core/periodic/reference_orbits.h"
 #include "core/reduced/quasi_static.h"
@@ -20,7 +21,7 @@ class PreparedGearSet {
   PreparedGearSet& operator=(const PreparedGearSet&) = delete;
 
   const GearSet& gear_set() const { return gear_set_; }
-  const MeshData& mesh() const { return mesh_; }
+  const GearPairSystem& system() const { return system_; }
   MeshGrids& grids() { return grids_; }
   /// For studies that meet the same speeds and loads with many lubricants.
   ReferenceOrbits& reference_orbits() { return reference_orbits_; }
@@ -29,6 +30,7 @@ class PreparedGearSet {
  private:
   GearSet gear_set_;
   MeshData mesh_;
+  GearPairSystem system_;
   MeshGrids grids_;
   ReferenceOrbits reference_orbits_;
   QuasiStaticScreen quasi_static_screen_;

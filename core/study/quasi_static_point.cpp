@@ -12,27 +12,29 @@ namespace tribodyn {
 namespace {
 
 /// Samples the history: solves the equilibrium anew at each phase, by the reference kernel. Throws
-/// Cancelled.
+/// Cancelled, and the refusal of a contact.
 void sample_quasi_static(const PeriodicProblem& problem, PeriodicOrbit& solution,
                          HistorySampler& history) {
-  GearPairSystem& system = problem.system;
-  const int intervals = system.mesh().intervals();
+  const GearPairSystem& system = problem.system;
+  const ContactRegime regime = solution.pieces.front().regime;
+  ContactSolver contacts(problem.contacts.model(), problem.tally);
   Instant at;
   while (history.wanted_in_first_cycles(1)) {
     if (problem.interrupted && problem.interrupted()) throw Cancelled();
     const double phase = history.next_phase();
     const MeshPhase mesh_phase = system.at_phase(phase);
     FrictionArms friction = solution.friction.at(phase);
-    system.set_interval(std::min(static_cast<int>(phase * intervals), intervals - 1));
     MarchState y{};
     for (int i = 0; i < 8; ++i) {
-      y = static_equilibrium(system, mesh_phase, phase, friction, problem.mean_pinion_speed);
-      system.evaluate(phase, y.data(), at);
+      y = static_equilibrium(system, solution.torques, regime.side, mesh_phase, phase, friction,
+                             problem.mean_pinion_speed);
+      throw_if_refused(
+          system.evaluate(phase, system.mesh().interval_at(phase), regime, y.data(), contacts, at));
       const double load = std::abs(at.mesh_force);
       if (!(load > 0)) break;
       friction = {at.pinion_friction_torque / load, at.gear_friction_torque / load};
     }
-    history.add(phase, y.data(), at, system.torques());
+    history.add(phase, y.data(), at, solution.torques);
   }
   history.repeat_first_cycles(1, system.cycle_angle() / problem.mean_pinion_speed);
 }
@@ -63,13 +65,11 @@ std::optional<PeriodicOrbit> choose_quasi_static(const PointProblem& problem) {
   if (!screen.passes(quasi_static_problem(problem))) return std::nullopt;
   auto solution = solve_quasi_static_with_error(problem);
   if (solution && solution->estimated_error <= problem.options.tolerance) return solution;
-  problem.system.take_refusal();
-  problem.system.set_torques(problem.target.torques);
+  problem.tally.take_refusal();
   return std::nullopt;
 }
 
 PointResult quasi_static_result(const PointProblem& problem, PeriodicOrbit& solution) {
-  GearPairSystem& system = problem.system;
   PointResult out = empty_result(problem.target, PointModel::kQuasiStatic);
   out.estimated_relative_error = known_error(solution.estimated_error);
   fill_from_orbit(problem, solution, out);
@@ -79,15 +79,14 @@ PointResult quasi_static_result(const PointProblem& problem, PeriodicOrbit& solu
   balance.shaft_damping = balance.mesh_damping = balance.parametric = 0;
   HistorySampler history(problem.options.history);
   sample_quasi_static(quasi_static_problem(problem), solution, history);
-  throw_if_refused(system);
   out.history = history.take();
-  out.statistics.contact_solutions = system.contact_solutions();
+  out.statistics.contact_solutions = problem.tally.solutions;
   return out;
 }
 
 PointResult solve_quasi_static_point(const PointProblem& problem) {
   auto solution = solve_quasi_static_with_error(problem);
-  throw_if_refused(problem.system);
+  throw_if_refused(problem.tally.refusal);
   if (!solution) {
     throw Refusal("NO_QUASI_STATIC_EQUILIBRIUM",
                   "load and friction of the quasi-static model do not settle");

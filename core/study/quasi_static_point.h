@@ -13,7 +13,7 @@ PeriodicProblem quasi_static_problem(const PointProblem& problem);
 
 /// The quasi-static solution, whatever its error; `estimated_error` is that of model and grid, as
 /// PointResult::estimated_relative_error means it, infinite if it cannot be estimated. Returns
-/// nullopt if a contact is refused (the system has the reason) or the iteration does not converge.
+/// nullopt if a contact is refused (the tally has the reason) or the iteration does not converge.
 std::optional<PeriodicOrbit> solve_quasi_static_with_error(const PointProblem& problem);
 
 /// Whether a cheaper model may stand in for the full one. It may not where a branch has to be kept
@@ -21,8 +21,7 @@ std::optional<PeriodicOrbit> solve_quasi_static_with_error(const PointProblem& p
 bool may_choose(const PointOptions& options, const std::optional<CarriedState>& from);
 
 /// Returns the quasi-static solution if its error is within the tolerance. Otherwise returns
-/// nullopt and leaves the system as it was but for the regime and the count of contacts. Contacts
-/// are solved only if the mechanics alone leave the error room.
+/// nullopt. Contacts are solved only if the mechanics alone leave the error room.
 std::optional<PeriodicOrbit> choose_quasi_static(const PointProblem& problem);
 
 /// The point of a solution, with the history of the options. Throws Cancelled.

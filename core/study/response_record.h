@@ -30,7 +30,6 @@ class ResponseRecord {
   Integrals integrals{};
   std::vector<GapEvent> gap_events;
   bool starts_in_gap = false;
-  ContactRegime end_regime;
 
   /// Fills everything that follows from the record. `cycles`: mesh cycles recorded.
   void fill(const Torques& torques, double cycles, bool periodic, PointResult& out) const;

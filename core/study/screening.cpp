@@ -16,7 +16,7 @@ std::optional<ContactSummary> contact_summary(const PointResult& r) {
 }
 
 PointFigures figures_of(const PointProblem& problem, const PeriodicOrbit& orbit, PointModel model) {
-  const GearPairSystem& system = problem.system;
+  const GearPairSystem& system = problem.system();
   const OperatingTarget& target = problem.target;
   PointFigures out;
   const OrbitFigures& f = orbit.figures;
@@ -35,7 +35,7 @@ PointFigures figures_of(const PointProblem& problem, const PeriodicOrbit& orbit,
   out.settled = true;
   out.period_in_mesh_cycles = orbit.period;
   out.estimated_relative_error = known_error(orbit.estimated_error);
-  out.contact_solutions = system.contact_solutions();
+  out.contact_solutions = problem.tally.solutions;
   out.model = model;
   if (problem.options.contact_summary) {
     PointResult record = empty_result(target, model);
@@ -54,10 +54,8 @@ std::optional<PointFigures> find_figures(PreparedScene& prepared,
   const Scene& scene = prepared.scene();
   const OperatingTarget target = target_of(scene, condition);
   PreparedGearSet& gear_set = prepared.gear_set();
-  GearPairSystem system(gear_set.mesh(), prepared.contacts().model(), gear_set.gear_set().dynamics,
-                        scene.options);
-  system.set_torques(target.torques);
-  const PointProblem problem{system, prepared.contacts(), gear_set, target, options};
+  ContactTally tally;
+  const PointProblem problem{prepared.contacts(), gear_set, target, options, tally};
   std::optional<PeriodicOrbit> quasi_static;
   if (options.model == PointModel::kQuasiStatic && target.torques.pinion != 0) {
     quasi_static = solve_quasi_static_with_error(problem);
@@ -70,7 +68,7 @@ std::optional<PointFigures> find_figures(PreparedScene& prepared,
   if (!search) return std::nullopt;
   if (step_errors == StepErrors::kByReference) search->references = &gear_set.reference_orbits();
   SolverWork work;
-  std::optional<AperiodicMotion> aperiodic;
+  std::optional<SectionPoint> aperiodic;
   const std::optional<PeriodicOrbit> orbit =
       find_orbit(problem.periodic(options.tolerance), *search, work, aperiodic);
   if (!orbit) return std::nullopt;

@@ -162,8 +162,12 @@ MarchingSolver cvode(const char* name, int method, bool roots) {
 
 }  // namespace
 
-ScaledProblem::ScaledProblem(GearPairSystem& system, double mean_pinion_speed)
-    : system_(system), march_scales_(tribodyn::march_scales(system, mean_pinion_speed)) {
+ScaledProblem::ScaledProblem(const GearPairSystem& system, const Torques& torques,
+                             ContactSolver& contacts, double mean_pinion_speed)
+    : system_(system),
+      torques_(torques),
+      contacts_(contacts),
+      march_scales_(march_scales(system, torques, mean_pinion_speed)) {
   for (int i = 0; i < kSize; ++i) scale_[i] = march_scales_.of(system.mesh(), i);
 }
 
@@ -178,29 +182,29 @@ MarchState ScaledProblem::from_scaled(const double* scaled) const {
 }
 
 void ScaledProblem::take_regime(double phase, const double* scaled) {
-  system_.regime = system_.regime_of(phase, from_scaled(scaled).data());
+  regime_ = system_.regime_of(phase, from_scaled(scaled).data());
 }
 
 void ScaledProblem::rates(double phase, const double* scaled, double* scaled_rates) {
   ++evaluations;
   const MarchState y = from_scaled(scaled);
-  const int intervals = system_.mesh().intervals();
-  system_.set_interval(std::clamp(static_cast<int>(phase * intervals), 0, intervals - 1));
-  if (!hold_regime) system_.regime = system_.regime_of(phase, y.data());
+  if (!hold_regime) regime_ = system_.regime_of(phase, y.data());
   Instant at;
-  system_.evaluate(phase, y.data(), at);
+  system_.evaluate(phase, system_.mesh().interval_at(phase), regime_, y.data(), contacts_, at);
   MarchState rate;
-  system_.derivative(y.data(), at, false, rate.data());
+  system_.derivative(y.data(), at, torques_, rate.data());
   for (int i = 0; i < kSize; ++i) scaled_rates[i] = rate[i] / scale_[i];
 }
 
 std::array<double, 2> ScaledProblem::events(double phase, const double* scaled) {
-  return system_.events(system_.at_phase(phase), from_scaled(scaled).data(), march_scales_.length,
+  return system_.events(system_.at_phase(phase), regime_, from_scaled(scaled).data(),
+                        march_scales_.length,
                         march_scales_.torque / system_.mesh().mean_pinion_contact_radius());
 }
 
 void ScaledProblem::change_regime(int event, double phase, const double* scaled) {
-  system_.change_regime(event, system_.at_phase(phase), from_scaled(scaled).data());
+  regime_ =
+      system_.regime_after(event, system_.at_phase(phase), regime_, from_scaled(scaled).data());
 }
 
 std::vector<MarchingSolver> marching_solvers() {

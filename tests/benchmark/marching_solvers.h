@@ -13,7 +13,9 @@ namespace tribodyn {
 /// components over their scales, the regime by the state unless it is held.
 class ScaledProblem {
  public:
-  ScaledProblem(GearPairSystem& system, double mean_pinion_speed);
+  /// Keeps the references.
+  ScaledProblem(const GearPairSystem& system, const Torques& torques, ContactSolver& contacts,
+                double mean_pinion_speed);
 
   void rates(double phase, const double* scaled, double* scaled_rates);
   /// Functions that pass through zero where the regime that is held ends.
@@ -28,7 +30,10 @@ class ScaledProblem {
   long evaluations = 0;
 
  private:
-  GearPairSystem& system_;
+  const GearPairSystem& system_;
+  const Torques& torques_;
+  ContactSolver& contacts_;
+  ContactRegime regime_;
   MarchScales march_scales_;
   MarchState scale_{};
 };

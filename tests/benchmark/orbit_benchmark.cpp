@@ -101,30 +101,30 @@ struct Transient {
 Transient march(PreparedScene& scene, const Place& place, const MarchingSolver& solver,
                 double accuracy, const PointResult& truth) {
   constexpr int kMostCycles = 400;
-  GearPairSystem system(scene.gear_set().mesh(), scene.contacts().model(),
-                        scene.gear_set().gear_set().dynamics, scene.scene().options);
-  system.solve_together(&scene.contacts());
+  const GearPairSystem& system = scene.gear_set().system();
+  ContactTally tally;
+  ContactSolver contacts(scene.contacts(), tally);
   const double ratio =
       static_cast<double>(system.mesh().pinion_teeth()) / system.mesh().gear_teeth();
   const double wheel = wheel_torque(scene.scene().vehicle, place.kilometres_per_hour / 3.6, 0, 0);
   Transient out;
   const auto start = Clock::now();
-  system.set_torques({wheel * ratio, wheel});
+  Torques torques{wheel * ratio, wheel};
   const double speed = truth.mean_pinion_speed;
-  MarchState state =
-      static_start(system, speed, 0, 0, place.start == PointStart::kLargeVibration ? 60e-6 : 0);
-  ScaledProblem problem(system, speed);
+  MarchState state = static_start(system, torques, speed, 0, 0,
+                                  place.start == PointStart::kLargeVibration ? 60e-6 : 0);
+  ScaledProblem problem(system, torques, contacts, speed);
   const CycleStepper step = solver.make(problem, accuracy);
   int settled = 0;
   for (int cycle = 0; cycle < kMostCycles && settled < 40; ++cycle) {
     const MarchState before = state;
     step(state);
-    const double torque = system.torques().pinion;
+    const double torque = torques.pinion;
     out.inefficiency.push_back(100 / std::abs(torque) *
                                std::sqrt(state[kLossShareSquared] / state[kTime]));
-    correct_period(system, before, 1, speed, false, state);
+    correct_period(system, before, 1, speed, false, torques, state);
     out.microseconds.push_back(microseconds_since(start));
-    out.contacts.push_back(system.contact_solutions());
+    out.contacts.push_back(tally.solutions);
     const double error = std::abs(out.inefficiency.back() / truth.inefficiency_rms.value() - 1);
     settled = error < 0.3 * place.error ? settled + 1 : 0;
     if (!std::isfinite(error)) break;

@@ -68,21 +68,24 @@ class OrderTest : public testing::Test {
 
   Outcome march(const InitialValueProblem& problem, double tolerance,
                 double maximum_step = 1) const {
-    GearPairSystem system(mesh_, contact_, scene_.gear_set.dynamics, scene_.options);
-    system.set_torques({problem.pinion_torque, wheel_torque(problem)});
+    const GearPairSystem system(mesh_, scene_.gear_set.dynamics, scene_.options);
+    ContactTally tally;
+    ContactSolver contacts(contact_, tally);
+    const Torques torques{problem.pinion_torque, wheel_torque(problem)};
     Outcome out;
     system.to_march(start(problem), out.state.data());
-    system.regime = system.regime_of(0, out.state.data());
-    out.scales = march_scales(system, mean_speed(problem));
+    SectionPoint at = system.at_section(out.state, torques);
+    out.scales = march_scales(system, torques, mean_speed(problem));
     MarchOptions options;
     options.relative_tolerance = tolerance;
     options.maximum_step = maximum_step;
     double time = 0, work = 0;
     for (int cycle = 0; cycle < problem.mesh_cycles; ++cycle) {
-      march_mesh_cycle(system, out.scales, options, out.state, out.work);
-      time += out.state[kTime];
-      work += out.state[kLossWork];
+      march_mesh_cycle(system, out.scales, options, contacts, at, out.work);
+      time += at.state[kTime];
+      work += at.state[kLossWork];
     }
+    out.state = at.state;
     out.state[kTime] = time;
     out.state[kLossWork] = work;
     return out;
@@ -239,7 +242,7 @@ class OrderTest : public testing::Test {
     }
     const Outcome product = march(problem, 1e-11);
     Outcome other = product;
-    GearPairSystem to_march(mesh_, contact_, scene_.gear_set.dynamics, scene_.options);
+    const GearPairSystem to_march(mesh_, scene_.gear_set.dynamics, scene_.options);
     to_march.to_march({section.pinion_shaft_twist, section.gear_shaft_twist,
                        section.pinion_shaft_speed, section.pinion_speed, section.gear_speed,
                        section.gear_shaft_speed, section.advance_with_error},

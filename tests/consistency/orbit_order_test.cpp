@@ -32,8 +32,7 @@ class OrbitOrder : public testing::TestWithParam<OrbitCase> {
     options.bilateral_contact = !c.contact_loss;
     options.first_cycles = c.contact_loss ? 60 : 0;
     orbit.torques = {c.pinion_torque, c.pinion_torque * 36 / 13};
-    system_.set_torques(orbit.torques);
-    orbit.state = static_start(system_, c.pinion_speed, 0, 0, 0);
+    orbit.state = static_start(system_, orbit.torques, c.pinion_speed, 0, 0, 0);
     const PeriodicProblem problem = this->problem(options.tolerance);
     SolverWork work;
     OrbitSolver solver(problem, work);
@@ -47,6 +46,8 @@ class OrbitOrder : public testing::TestWithParam<OrbitCase> {
     return {system_,
             prepared_.contacts(),
             prepared_.gear_set().grids(),
+            tally_,
+            {},
             GetParam().pinion_speed,
             false,
             tolerance,
@@ -66,8 +67,8 @@ class OrbitOrder : public testing::TestWithParam<OrbitCase> {
 
   const Scene scene_ = with_coarse_tables(reference_scene(), 8);
   PreparedScene prepared_{scene_};
-  GearPairSystem system_{prepared_.gear_set().mesh(), prepared_.contacts().model(),
-                         scene_.gear_set.dynamics, scene_.options};
+  const GearPairSystem& system_ = prepared_.gear_set().system();
+  ContactTally tally_;
 };
 
 // Runge-Kutta steps of order four end at the kinks of the tables and at events.
@@ -95,11 +96,7 @@ TEST_P(OrbitOrder, MultiplierWithFrictionIsThatOfTheMarch) {
     MarchOptions march;
     march.relative_tolerance = 1e-8;
     SolverWork work;
-    system_.set_torques(orbit.torques);
-    system_.solve_together(&prepared_.contacts());
-    const double marched =
-        marched_multiplier(problem, orbit.pieces.front().start, orbit.period, march, work);
-    system_.solve_together(nullptr);
+    const double marched = marched_multiplier(problem, orbit, march, work);
     EXPECT_NEAR(*by_derivatives, marched, steps == 24 ? 3e-4 : 1e-4) << c.name << ' ' << steps;
   }
 }

@@ -86,7 +86,7 @@ struct OrbitOnGrid {
         contacts(FlankContactModel(scene.lubricant, scene.solid, scene.roughness, scene.boundary,
                                    scene.sump_temperature, scene.inlet_temperature_rise,
                                    scene.options)),
-        system(mesh, contacts.model(), scene.gear_set.dynamics, scene.options),
+        system(mesh, scene.gear_set.dynamics, scene.options),
         grids(mesh, scene.gear_set.dynamics.half_backlash,
               reduced_modulus(scene.solid.youngs_modulus, scene.solid.poissons_ratio),
               scene.options),
@@ -94,19 +94,19 @@ struct OrbitOnGrid {
         problem{system,
                 contacts,
                 grids,
+                tally,
+                place.target.torques,
                 place.target.mean_pinion_speed,
                 place.target.solve_wheel_torque,
                 1e-5,
                 {}},
         solver(problem, work) {
-    system.set_torques(place.target.torques);
     options.bilateral_contact = in_contact;
   }
 
   /// From the state of a point.
   bool find(const PointResult& point, PeriodicOrbit& orbit) {
-    system.set_torques({point.pinion_torque, point.wheel_torque});
-    orbit.torques = system.torques();
+    orbit.torques = {point.pinion_torque, point.wheel_torque};
     orbit.period = point.period_in_mesh_cycles;
     system.to_march(point.section_state, orbit.state.data());
     const bool near = options.bilateral_contact && orbit.period == 1
@@ -137,11 +137,11 @@ struct OrbitOnGrid {
   std::optional<OrbitFigureValues> figures(const PeriodicOrbit& orbit) {
     PointResult r;
     r.mean_pinion_speed = place.target.mean_pinion_speed;
-    system.set_torques(orbit.torques);
-    const SolvedPieces solved = solved_pieces(system, grid, orbit.pieces, *orbit.contacts);
+    const SolvedPieces solved =
+        solved_pieces(system, grid, orbit.pieces, *orbit.contacts, contacts.model());
     ResponseRecord record(1);
     record_orbit(system, orbit, solved, record);
-    record.fill(system.torques(), orbit.period, true, r);
+    record.fill(orbit.torques, orbit.period, true, r);
     if (!r.inefficiency_rms) return std::nullopt;
     return OrbitFigureValues{*r.inefficiency_rms,
                              *r.inefficiency_energy_mean,
@@ -161,6 +161,7 @@ struct OrbitOnGrid {
   GearPairSystem system;
   MeshGrids grids;
   const MeshGrid& grid;
+  ContactTally tally;
   SolverWork work;
   PeriodicProblem problem;
   OrbitSolver solver;

@@ -106,19 +106,18 @@ TEST(QuasiStatic, IsWhatPhaseByPhaseGivesWithinItsOwnEstimateAtEveryTolerance) {
       const Loss plain = plain_quasi_static(scene, kilometres_per_hour);
       for (const double tolerance : {1e-2, 1e-3, 1e-4, 1e-5}) {
         SCOPED_TRACE(testing::Message() << kilometres_per_hour << " km/h at " << tolerance);
-        GearPairSystem system(gear_set.mesh(), prepared.contacts().model(),
-                              gear_set.gear_set().dynamics, scene.options);
         PointOptions options;
         options.tolerance = tolerance;
         const OperatingTarget target = target_of(scene, cruise(kilometres_per_hour));
-        system.set_torques(target.torques);
+        ContactTally tally;
         const auto r = solve_quasi_static(
-            quasi_static_problem({system, prepared.contacts(), gear_set, target, options}));
+            quasi_static_problem({prepared.contacts(), gear_set, target, options, tally}));
         ASSERT_TRUE(r.has_value());
         EXPECT_LE(r->estimated_error, 0.5 * tolerance);
         const double torque = r->figures.torque;
         const double rms = 100 * r->figures.loss_rms / torque;
-        const double energy = 100 * r->figures.loss_energy / (torque * system.cycle_angle());
+        const double energy =
+            100 * r->figures.loss_energy / (torque * gear_set.system().cycle_angle());
         const double error =
             std::max({std::abs(torque / plain.pinion_torque - 1), std::abs(rms / plain.rms - 1),
                       std::abs(energy / plain.energy_mean - 1)});
@@ -192,7 +191,7 @@ TEST(QuasiStatic, IsCancelled) {
 struct Oscillator {
   Scene scene = reference_scene();
   std::unique_ptr<PreparedScene> prepared;
-  std::unique_ptr<GearPairSystem> system;
+  const GearPairSystem* system;
   double natural, damping;  // [rad/s], of critical
 
   explicit Oscillator(double damping_factor) {
@@ -201,10 +200,8 @@ struct Oscillator {
     d.pinion_shaft_damping = d.gear_shaft_damping = 0;
     d.mesh_damping *= damping_factor;
     prepared = std::make_unique<PreparedScene>(scene);
-    PreparedGearSet& gear_set = prepared->gear_set();
-    system = std::make_unique<GearPairSystem>(gear_set.mesh(), prepared->contacts().model(),
-                                              gear_set.gear_set().dynamics, scene.options);
-    const MeshData& mesh = gear_set.mesh();
+    system = &prepared->gear_set().system();
+    const MeshData& mesh = system->mesh();
     const double per_mass = std::pow(mesh.mean_pinion_contact_radius(), 2) / d.pinion_inertia +
                             std::pow(mesh.mean_gear_contact_radius(), 2) / d.gear_inertia;
     natural = std::sqrt(mesh.mean_mesh_stiffness() * per_mass);

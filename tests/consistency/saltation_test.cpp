@@ -38,15 +38,13 @@ class GapMarch {
   explicit GapMarch(const GapCase& c)
       : scene_(changed(c)),
         mesh_(scene_.gear_set),
-        contacts_({scene_.lubricant, scene_.solid, scene_.roughness, scene_.boundary,
-                   scene_.sump_temperature, scene_.inlet_temperature_rise, scene_.options}),
-        system_(mesh_, contacts_, scene_.gear_set.dynamics, scene_.options),
+        system_(mesh_, scene_.gear_set.dynamics, scene_.options),
+        torques_{c.pinion_torque, c.pinion_torque * 36 / 13},
         grid_(mesh_, scene_.gear_set.dynamics.half_backlash, kSteps,
               reduced_modulus(scene_.solid.youngs_modulus, scene_.solid.poissons_ratio),
               scene_.options) {
-    system_.set_torques({c.pinion_torque, c.pinion_torque * 36 / 13});
-    scales_ = march_scales(system_, kSpeed);
-    start_ = static_start(system_, kSpeed, 0, 0, 60e-6);
+    scales_ = march_scales(system_, torques_, kSpeed);
+    start_ = static_start(system_, torques_, kSpeed, 0, 0, 60e-6);
     // Friction of several percent that varies.
     for (int n = 0; n <= 2 * kSteps * kPeriod; ++n) {
       const double phase = 0.5 * n / kSteps;
@@ -58,7 +56,7 @@ class GapMarch {
   /// the start and T_s; scaled.
   Derivatives by_variation() {
     Sensitivity sensitivity;
-    end_of(start_, system_.torques(), &sensitivity);
+    end_of(start_, torques_, &sensitivity);
     Derivatives out;
     for (int i = 0; i < kUnknowns; ++i) {
       for (int j = 0; j < kUnknowns; ++j) {
@@ -71,14 +69,13 @@ class GapMarch {
   /// By central differences of marches.
   Derivatives by_differences() {
     constexpr double kStep = 1e-4;  // scaled: truncation 1e-8, rounding of events 1e-8
-    const Torques torques = system_.torques();
     Derivatives out;
     for (int j = 0; j < kUnknowns; ++j) {
       MarchState ends[2];
       for (const int side : {0, 1}) {
         const double change = (side == 0 ? -1 : 1) * kStep * scale_of_column(j);
         MarchState start = start_;
-        Torques changed = torques;
+        Torques changed = torques_;
         (j + 1 < kUnknowns ? start[j + 1] : changed.pinion) += change;
         ends[side] = end_of(start, changed, nullptr);
       }
@@ -86,7 +83,6 @@ class GapMarch {
         out(i, j) = (ends[1][i] - ends[0][i]) / (2 * kStep * scale(i));
       }
     }
-    system_.set_torques(torques);
     return out;
   }
 
@@ -112,17 +108,15 @@ class GapMarch {
   double scale(int component) const { return scales_.of(mesh_, component); }
   double scale_of_column(int j) const { return j + 1 < kUnknowns ? scale(j + 1) : scales_.torque; }
   MarchState end_of(MarchState y, const Torques& torques, Sensitivity* sensitivity) {
-    system_.set_torques(torques);
-    system_.regime = system_.regime_of(0, y.data());
     Rk4WithEvents march(system_, scales_, grid_, kPeriod, false, 1e-12, InstructionSet::kPortable);
-    EXPECT_TRUE(march.run(friction_, false, y, sensitivity, &pieces_));
+    EXPECT_TRUE(march.run(torques, friction_, false, y, sensitivity, &pieces_));
     return y;
   }
 
   Scene scene_;
   MeshData mesh_;
-  FlankContactModel contacts_;
   GearPairSystem system_;
+  Torques torques_;
   MeshGrid grid_;
   MarchScales scales_;
   FrozenFriction friction_;

@@ -40,26 +40,24 @@ struct PointBench {
   PointBench(const StepCase& c, int steps, bool wheel_torque)
       : scene(changed(c)),
         mesh(scene.gear_set),
-        contacts({scene.lubricant, scene.solid, scene.roughness, scene.boundary,
-                  scene.sump_temperature, scene.inlet_temperature_rise, scene.options}),
-        system(mesh, contacts, scene.gear_set.dynamics, scene.options),
+        system(mesh, scene.gear_set.dynamics, scene.options),
+        torques{c.pinion_torque, c.pinion_torque * 41 / 13},
+        regime{c.pinion_torque > 0 ? 1 : -1, true},
         grid(mesh, scene.gear_set.dynamics.half_backlash, steps,
              reduced_modulus(scene.solid.youngs_modulus, scene.solid.poissons_ratio),
              scene.options),
         solve_wheel_torque(wheel_torque) {
-    system.set_torques({c.pinion_torque, c.pinion_torque * 41 / 13});
-    system.regime = {c.pinion_torque > 0 ? 1 : -1, true};
     // Any friction will do that varies.
     for (int n = 0; n <= 2 * steps; ++n) {
       const double phase = 0.5 * n / steps;
       friction.add(phase, {-1e-3 * (1 + std::sin(6 * phase)), -2e-3 * (1 - 0.5 * phase)}, 1);
     }
-    start = static_start(system, kSpeed, 0, 0, 0);
-    const MarchScales scales = march_scales(system, kSpeed);
+    start = static_start(system, torques, kSpeed, 0, 0, 0);
+    const MarchScales scales = march_scales(system, torques, kSpeed);
     Rk4WithEvents march(system, scales, grid, 1, solve_wheel_torque, 1e-9,
                         InstructionSet::kPortable);
     MarchState y = start;
-    marched = march.run(friction, true, y, &sensitivity, &pieces);
+    marched = march.run(torques, friction, true, y, &sensitivity, &pieces);
     for (Columns* columns : {&frozen.start, &frozen.middle}) {
       columns->resize(kFrictionRows, steps + 1);
     }
@@ -82,13 +80,18 @@ struct PointBench {
     if (c.change) c.change(scene);
     return scene;
   }
-  StepBlock block() const { return {system, grid, system.regime.side, solve_wheel_torque, frozen}; }
-  double scale(int component) const { return march_scales(system, kSpeed).of(mesh, component); }
+  StepBlock block() const {
+    return {system, torques, grid, regime.side, solve_wheel_torque, frozen};
+  }
+  double scale(int component) const {
+    return march_scales(system, torques, kSpeed).of(mesh, component);
+  }
 
   Scene scene;
   MeshData mesh;
-  FlankContactModel contacts;
   GearPairSystem system;
+  Torques torques;
+  ContactRegime regime;
   MeshGrid grid;
   bool solve_wheel_torque;
   FrozenFriction friction;
@@ -138,8 +141,9 @@ TEST_P(StepsSideBySide, HaveTheDerivativesOfTheWholeMarch) {
       for (int j = 0; j < kStepUnknowns; ++j) {
         // By components' sizes: their derivatives have many units.
         const bool by_torque = j + 1 == kStepUnknowns;
-        const double by =
-            by_torque ? march_scales(bench.system, PointBench::kSpeed).torque : bench.scale(j + 1);
+        const double by = by_torque
+                              ? march_scales(bench.system, bench.torques, PointBench::kSpeed).torque
+                              : bench.scale(j + 1);
         for (int i = kPinionShaftTwist; i <= kWheelSpeed; ++i) {
           EXPECT_NEAR(whole[kStepUnknowns * j + i - 1] * by / bench.scale(i),
                       bench.sensitivity[i](j) * by / bench.scale(i), 1e-11)
@@ -160,7 +164,7 @@ TEST_P(StepsSideBySide, HaveTheDerivativesOfTheWholeMarch) {
 TEST_P(StepsSideBySide, KnowForcesMiddlesAndWhatContactsSee) {
   constexpr int kSteps = 12;
   PointBench bench(GetParam(), kSteps, false);
-  GearPairSystem& system = bench.system;
+  const GearPairSystem& system = bench.system;
   for (const InstructionSet set : supported_instruction_sets()) {
     SCOPED_TRACE(FlankContactBatch::name(set));
     CycleResponse filled = bench.response;
@@ -171,7 +175,7 @@ TEST_P(StepsSideBySide, KnowForcesMiddlesAndWhatContactsSee) {
       MarchState y{};
       for (int i = kTime; i <= kWheelSpeed; ++i) y[i] = at[i][lane];
       Mechanics expected;
-      system.mechanics(bench.grid.at(node), y.data(), expected);
+      system.mechanics(bench.grid.at(node), bench.regime, y.data(), expected);
       const double force = std::abs(expected.mesh_force);
       EXPECT_NEAR(at[kMeshForceRow][lane], expected.mesh_force, 1e-11 * force);
       EXPECT_NEAR(at[kTransmissionErrorRow][lane], expected.transmission_error, 1e-17);
@@ -195,7 +199,7 @@ TEST_P(StepsSideBySide, KnowForcesMiddlesAndWhatContactsSee) {
         int n = contacts->first[place];
         for (const FlankKinematics& flank : bench.grid.flanks(node)) {
           if (!(flank.load_share > 0)) continue;
-          const double load = flank.load_share * system.regime.load(at[kMeshForceRow][node / 2]);
+          const double load = flank.load_share * bench.regime.load(at[kMeshForceRow][node / 2]);
           FlankMotion motion;
           const ContactConditions c = system.contact_conditions(flank, load, y.data(), motion);
           EXPECT_NEAR(seen[kGatheredLoad][n], c.load, 1e-12 * (c.load + 1));
@@ -367,11 +371,11 @@ struct OrbitBench {
         contacts({scene.lubricant, scene.solid, scene.roughness, scene.boundary,
                   scene.sump_temperature, scene.inlet_temperature_rise, scene.options}),
         batch(set ? FlankContactBatch(contacts, *set) : FlankContactBatch(contacts)),
-        system(mesh, contacts, scene.gear_set.dynamics, scene.options),
+        system(mesh, scene.gear_set.dynamics, scene.options),
         grids(mesh, scene.gear_set.dynamics.half_backlash,
               reduced_modulus(scene.solid.youngs_modulus, scene.solid.poissons_ratio),
               scene.options),
-        problem{system, batch, grids, 0, false, 1e-5, {}},
+        problem{system, batch, grids, tally, {}, 0, false, 1e-5, {}},
         solver(problem, work) {
     aim(pinion_torque, pinion_speed, wheel_torque);
   }
@@ -384,8 +388,7 @@ struct OrbitBench {
     options.tolerance = 1e-9;  // contacts are solved to 1e-10
     origin = {};
     origin.torques = {pinion_torque, pinion_torque * 36 / 13};
-    system.set_torques(origin.torques);
-    origin.state = static_start(system, pinion_speed, 0, 0, 0);
+    origin.state = static_start(system, origin.torques, pinion_speed, 0, 0, 0);
   }
 
   bool solve(int steps, PeriodicOrbit& orbit) { return solve(steps, orbit, solver); }
@@ -397,7 +400,7 @@ struct OrbitBench {
 
   /// By one march of the whole cycle after the other.
   PeriodicOrbit alone(int steps) {
-    OrbitFriction friction(system, batch, problem.tolerance);
+    OrbitFriction friction(system, batch, tally, problem.tolerance);
     PeriodicOrbit orbit = origin;
     SingleShooting shooting(problem, friction, grids.with_steps(steps), options, orbit);
     EXPECT_TRUE(shooting.solve(1e-3));
@@ -416,6 +419,7 @@ struct OrbitBench {
   FlankContactBatch batch;
   GearPairSystem system;
   MeshGrids grids;
+  ContactTally tally;
   SolverWork work;
   PeriodicProblem problem;
   OrbitSolver solver;
@@ -479,7 +483,7 @@ TEST(MultipleShooting, FindsWhatSingleShootingFindsWhereFlanksPull) {
       OrbitBench bench(20.1, speed, wheel);
       PeriodicOrbit orbit = bench.origin;
       const MeshGrid& grid = bench.grids.with_steps(48);
-      OrbitFriction friction(bench.system, bench.batch, bench.problem.tolerance);
+      OrbitFriction friction(bench.system, bench.batch, bench.tally, bench.problem.tolerance);
       CycleStorage storage;
       MultipleShooting shooting(bench.problem, friction, storage, grid, bench.options, orbit);
       ASSERT_TRUE(shooting.solve(1e-3));
@@ -504,21 +508,20 @@ TEST(MultipleShooting, FindsWhatSingleShootingFindsWhereFlanksPull) {
 TEST(OrbitSolver, HandsOverTheContactsOfTheResponse) {
   const auto expect_contacts = [](OrbitBench& bench, PeriodicOrbit& orbit) {
     ASSERT_TRUE(bench.solve(48, orbit));
-    const SolvedPieces solved =
-        solved_pieces(bench.system, bench.grids.with_steps(48), orbit.pieces, *orbit.contacts);
-    const int intervals = bench.mesh.intervals();
+    const SolvedPieces solved = solved_pieces(bench.system, bench.grids.with_steps(48),
+                                              orbit.pieces, *orbit.contacts, bench.contacts);
+    ContactSolver by_reference(bench.contacts, bench.tally);
     const auto expect_close = [](double a, double b) {
       EXPECT_NEAR(a, b, 1e-8 * std::abs(b) + 1e-9);
     };
     for (std::size_t i = 0; i < orbit.pieces.size(); ++i) {
       const OrbitPiece& p = orbit.pieces[i];
-      bench.system.regime = p.regime;
       const MarchState* states[3] = {&p.start, &p.middle, &p.end};
       for (int part = 0; part < 3; ++part) {
         const double phase = std::min(p.phase + 0.5 * part * p.length, 1.0);
-        bench.system.set_interval(std::min(static_cast<int>(phase * intervals), intervals - 1));
         Instant expected;
-        bench.system.evaluate(phase, states[part]->data(), expected);
+        bench.system.evaluate(phase, bench.mesh.interval_at(phase), p.regime, states[part]->data(),
+                              by_reference, expected);
         const Instant& at = solved.of(i)[part];
         expect_close(at.mesh_force, expected.mesh_force);
         expect_close(at.pinion_friction_torque, expected.pinion_friction_torque);

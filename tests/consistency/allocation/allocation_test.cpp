@@ -27,23 +27,25 @@ class Allocation : public testing::TestWithParam<double> {
         mesh_(scene_.gear_set),
         contact_(scene_.lubricant, scene_.solid, scene_.roughness, scene_.boundary,
                  scene_.sump_temperature, scene_.inlet_temperature_rise, scene_.options),
-        system_(mesh_, contact_, scene_.gear_set.dynamics, scene_.options) {
+        system_(mesh_, scene_.gear_set.dynamics, scene_.options) {
     OperatingCondition condition;
     condition.vehicle_speed = GetParam() / 3.6;
     const PointResult point = solve_operating_point(scene_, condition, {});
     EXPECT_TRUE(point.settled);
-    system_.set_torques({point.pinion_torque, point.wheel_torque});
-    system_.to_march(point.section_state, state_.data());
-    system_.regime = system_.regime_of(0, state_.data());
-    scales_ = march_scales(system_, point.mean_pinion_speed);
+    MarchState state{};
+    system_.to_march(point.section_state, state.data());
+    at_ = system_.at_section(state, {point.pinion_torque, point.wheel_torque});
+    scales_ = march_scales(system_, at_.torques, point.mean_pinion_speed);
   }
 
   Scene scene_;
   MeshData mesh_;
   FlankContactModel contact_;
   GearPairSystem system_;
+  ContactTally tally_;
+  ContactSolver contacts_{contact_, tally_};
   MarchScales scales_{};
-  MarchState state_{};
+  SectionPoint at_;
 };
 
 // Direct calls: a new-expression whose result is not used may be optimised away.
@@ -60,24 +62,25 @@ TEST_P(Allocation, NoneInTheRightHandSide) {
   MarchState rate;
   const auto right_hand_side = [&] {
     for (int i = 0; i < 50; ++i) {
-      system_.set_interval(i);
-      system_.evaluate((i + 0.3) / mesh_.intervals(), state_.data(), at);
-      system_.derivative(state_.data(), at, false, rate.data());
+      system_.evaluate((i + 0.3) / mesh_.intervals(), i, at_.regime, at_.state.data(), contacts_,
+                       at);
+      system_.derivative(at_.state.data(), at, at_.torques, rate.data());
     }
   };
   right_hand_side();  // quadrature rules and the asperity table are made at the first call
-  const long contacts = system_.contact_solutions();
+  const long contacts = tally_.solutions;
   EXPECT_EQ(allocations_of(right_hand_side), 0);
-  EXPECT_GT(system_.contact_solutions(), contacts);
+  EXPECT_GT(tally_.solutions, contacts);
 }
 
 TEST_P(Allocation, NoneInAMeshCycle) {
   SolverWork work;
   const MarchOptions options;
-  march_mesh_cycle(system_, scales_, options, state_, work);
+  march_mesh_cycle(system_, scales_, options, contacts_, at_, work);
   for (int i = 0; i < 5; ++i) {
-    EXPECT_EQ(allocations_of([&] { march_mesh_cycle(system_, scales_, options, state_, work); }),
-              0);
+    EXPECT_EQ(
+        allocations_of([&] { march_mesh_cycle(system_, scales_, options, contacts_, at_, work); }),
+        0);
   }
   EXPECT_EQ(work.events > 0, GetParam() < 80);
 }

@@ -1,0 +1,88 @@
+#include "core/driveline/contact_solver.h"
+
+namespace tribodyn {
+
+ContactSolver::ContactSolver(const FlankContactModel& reference, ContactTally& tally)
+    : reference_(reference),
+      batch_(nullptr),
+      geometries_(reference.reduced_modulus(), reference.options()),
+      tally_(tally) {}
+
+ContactSolver::ContactSolver(const FlankContactBatch& batch, ContactTally& tally)
+    : reference_(batch.model()),
+      batch_(&batch),
+      geometries_(reference_.reduced_modulus(), reference_.options(), kFlankPairs),
+      tally_(tally) {}
+
+ContactStatus ContactSolver::solve(const std::array<ContactConditions, kFlankPairs>& conditions,
+                                   std::array<ContactFigures, kFlankPairs>& out) {
+  if (batch_ != nullptr) solve_together(conditions, out);
+  ContactStatus refusal = ContactStatus::kOk;
+  for (int k = 0; k < kFlankPairs; ++k) {
+    if (!(conditions[k].load > 0)) {
+      out[k] = ContactFigures{};
+      continue;
+    }
+    if (batch_ == nullptr) out[k] = reference_.solve(conditions[k]);
+    ++tally_.solutions;
+    if (refusal == ContactStatus::kOk) refusal = out[k].status;
+  }
+  return refusal;
+}
+
+void ContactSolver::solve_together(const std::array<ContactConditions, kFlankPairs>& conditions,
+                                   std::array<ContactFigures, kFlankPairs>& out) {
+  using Column = std::array<double, kFlankPairs>;
+  Column load, pinion_x, pinion_y, gear_x, gear_y;
+  for (int k = 0; k < kFlankPairs; ++k) {
+    const ContactConditions& c = conditions[k];
+    load[k] = c.load;
+    pinion_x[k] = c.velocity_1_x;
+    pinion_y[k] = c.velocity_1_y;
+    gear_x[k] = c.velocity_2_x;
+    gear_y[k] = c.velocity_2_y;
+    if (c.load > 0) geometries_.set(k, c.radius_x, c.radius_y);
+  }
+  Column friction, viscous, boundary, temperature, film, ratio, pressure, rate, stress, share,
+      asperities;
+  std::array<bool, kFlankPairs> at_centre;
+  std::array<ContactStatus, kFlankPairs> status;
+  FlankContactBatchResults results;
+  results.friction = friction.data();
+  results.viscous_friction = viscous.data();
+  results.boundary_friction = boundary.data();
+  results.contact_temperature = temperature.data();
+  results.central_film_thickness = film.data();
+  results.film_ratio = ratio.data();
+  results.maximum_pressure = pressure.data();
+  results.shear_rate = rate.data();
+  results.mean_shear_stress = stress.data();
+  results.limiting_stress_area_share = share.data();
+  results.asperity_load = asperities.data();
+  results.limiting_stress_at_centre = at_centre.data();
+  results.status = status.data();
+  batch_->solve(geometries_, 0, kFlankPairs,
+                {load.data(), pinion_x.data(), pinion_y.data(), gear_x.data(), gear_y.data()},
+                results);
+  for (int k = 0; k < kFlankPairs; ++k) {
+    if (!(load[k] > 0)) continue;
+    ContactFigures& contact = out[k];
+    contact = {};
+    contact.status = status[k];
+    contact.friction = friction[k];
+    contact.viscous_friction = viscous[k];
+    contact.boundary_friction = boundary[k];
+    contact.contact_temperature = temperature[k];
+    contact.central_film_thickness = film[k];
+    contact.film_ratio = ratio[k];
+    contact.maximum_pressure = pressure[k];
+    contact.shear_rate = rate[k];
+    contact.limiting_stress_area_share = share[k];
+    contact.limiting_stress_at_centre = at_centre[k];
+    contact.mean_shear_stress = stress[k];
+    contact.asperity_load = asperities[k];
+    reference_.complete(conditions[k], contact);
+  }
+}
+
+}  // namespace tribodyn

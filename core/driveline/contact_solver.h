@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <utility>
+
+#include "core/contact/flank_contact_batch.h"
+#include "core/gear/mesh_data.h"
+
+namespace tribodyn {
+
+/// The contacts that a search or a march has solved.
+struct ContactTally {
+  long solutions = 0;
+  ContactStatus refusal = ContactStatus::kOk;  ///< the first one since the last take_refusal()
+  ContactStatus take_refusal() { return std::exchange(refusal, ContactStatus::kOk); }
+};
+
+/// Solves the contacts of one instant after another: one by one by the reference, or together by
+/// the batch, which leaves out outputs that no record holds. Holds storage: one per march.
+/// Allocates nothing once it is made.
+class ContactSolver {
+ public:
+  /// Keeps the references; adds to the solutions of `tally`.
+  ContactSolver(const FlankContactModel& reference, ContactTally& tally);
+  ContactSolver(const FlankContactBatch& batch, ContactTally& tally);
+
+  /// Flank pairs without load have no contact: their figures are empty. Returns the first refusal,
+  /// kOk if there is none.
+  ContactStatus solve(const std::array<ContactConditions, kFlankPairs>& conditions,
+                      std::array<ContactFigures, kFlankPairs>& out);
+
+ private:
+  void solve_together(const std::array<ContactConditions, kFlankPairs>& conditions,
+                      std::array<ContactFigures, kFlankPairs>& out);
+
+  const FlankContactModel& reference_;
+  const FlankContactBatch* batch_;  // null: by the reference
+  ContactGeometries geometries_;
+  ContactTally& tally_;
+};
+
+}  // namespace tribodyn
