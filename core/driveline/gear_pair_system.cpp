@@ -34,7 +34,7 @@ ContactRegime GearPairSystem::regime_of(double phase, const double* y) const {
   return r;
 }
 
-std::array<double, 2> GearPairSystem::events(const MeshPhase& phase, ContactRegime regime,
+std::array<double, 2> GearPairSystem::events(const MeshPhase& phase, const ContactRegime& regime,
                                              const double* y, double length, double force) const {
   Mechanics at;
   kinematics(phase, regime, y, at);
@@ -63,7 +63,7 @@ ContactRegime GearPairSystem::regime_after(int event, const MeshPhase& phase, Co
   return r;
 }
 
-ContactStatus GearPairSystem::evaluate(double phase, int interval, ContactRegime regime,
+ContactStatus GearPairSystem::evaluate(double phase, int interval, const ContactRegime& regime,
                                        const double* y, ContactSolver& contacts,
                                        Instant& out) const {
   mechanics(phase, regime, y, out);
@@ -103,8 +103,9 @@ void GearPairSystem::derivative(const double* y, const Instant& at, const Torque
       time_per_phase;
 }
 
-void GearPairSystem::record_derivative(const double* y, const Instant& at, ContactRegime regime,
-                                       const Torques& torques, double* dy) const {
+void GearPairSystem::record_derivative(const double* y, const Instant& at,
+                                       const ContactRegime& regime, const Torques& torques,
+                                       double* dy) const {
   derivative(y, at, torques, dy);
   const DrivelineDynamics& d = dynamics_;
   for (int i = kMarchComponents; i < kRecordComponents; ++i) dy[i] = 0;
@@ -185,7 +186,8 @@ SectionState GearPairSystem::to_section(const double* y) const {
               mesh_.functions(0, -lag * y[kMeshApproach]).radius_integral};
 }
 
-double GearPairSystem::stored_energy(double phase, ContactRegime regime, const double* y) const {
+double GearPairSystem::stored_energy(double phase, const ContactRegime& regime,
+                                     const double* y) const {
   const DrivelineDynamics& d = dynamics_;
   Mechanics at;
   kinematics(phase, regime, y, at);

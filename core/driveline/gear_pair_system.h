@@ -151,23 +151,24 @@ class GearPairSystem {
   /// Event functions of a regime, positive once their event has happened. 0: flanks part, or meet
   /// on the drive side; over `length`. 1: the load ends or begins, over `force`; or flanks meet on
   /// the coast side, over `length`.
-  std::array<double, 2> events(const MeshPhase& phase, ContactRegime regime, const double* state,
-                               double length, double force) const;
+  std::array<double, 2> events(const MeshPhase& phase, const ContactRegime& regime,
+                               const double* state, double length, double force) const;
   /// The regime after event 0 or 1 of a regime.
   ContactRegime regime_after(int event, const MeshPhase& phase, ContactRegime regime,
                              const double* state) const;
   /// x, mesh force and shaft torques, without friction.
-  void mechanics(double phase, ContactRegime regime, const double* state, Mechanics& out) const {
+  void mechanics(double phase, const ContactRegime& regime, const double* state,
+                 Mechanics& out) const {
     mechanics(at_phase(phase), regime, state, out);
   }
   template <class Real>
-  void mechanics(const MeshPhase& phase, ContactRegime regime, const Real* state,
+  void mechanics(const MeshPhase& phase, const ContactRegime& regime, const Real* state,
                  MechanicsOf<Real>& out) const;
   /// Evaluates mechanics and the friction of each loaded flank at a mesh phase [cycles], by the
   /// straight lines of a table interval, continued outside it. Returns the first refusal of a
   /// contact, kOk if there is none.
-  ContactStatus evaluate(double phase, int interval, ContactRegime regime, const double* state,
-                         ContactSolver& contacts, Instant& out) const;
+  ContactStatus evaluate(double phase, int interval, const ContactRegime& regime,
+                         const double* state, ContactSolver& contacts, Instant& out) const;
   /// The conditions of a flank's contact under `load` [N] in a state; sets its sliding and arms.
   ContactConditions contact_conditions(const FlankKinematics& flank, double load,
                                        const double* state, FlankMotion& motion) const;
@@ -179,14 +180,15 @@ class GearPairSystem {
   void derivative(const double* state, const Instant& at, const Torques& torques,
                   double* derivative) const;
   /// The same of all kRecordComponents.
-  void record_derivative(const double* state, const Instant& at, ContactRegime regime,
+  void record_derivative(const double* state, const Instant& at, const ContactRegime& regime,
                          const Torques& torques, double* derivative) const;
   /// x and mesh force without friction: for events.
-  void kinematics(double phase, ContactRegime regime, const double* state, Mechanics& out) const {
+  void kinematics(double phase, const ContactRegime& regime, const double* state,
+                  Mechanics& out) const {
     kinematics(at_phase(phase), regime, state, out);
   }
   template <class Real>
-  void kinematics(const MeshPhase& phase, ContactRegime regime, const Real* state,
+  void kinematics(const MeshPhase& phase, const ContactRegime& regime, const Real* state,
                   MechanicsOf<Real>& out) const;
   /// dR_g/d(mesh approach) [-].
   double gear_radius_by_approach(const MeshPhase& phase, double approach) const {
@@ -199,7 +201,7 @@ class GearPairSystem {
   void to_march(const SectionState& section, double* state) const;
   SectionState to_section(const double* state) const;
   /// Kinetic and elastic energy [J].
-  double stored_energy(double phase, ContactRegime regime, const double* state) const;
+  double stored_energy(double phase, const ContactRegime& regime, const double* state) const;
 
   const MeshData& mesh() const { return mesh_; }
   const DrivelineDynamics& dynamics() const { return dynamics_; }
@@ -217,7 +219,7 @@ class GearPairSystem {
 };
 
 template <class Real>
-void GearPairSystem::kinematics(const MeshPhase& phase, ContactRegime regime, const Real* y,
+void GearPairSystem::kinematics(const MeshPhase& phase, const ContactRegime& regime, const Real* y,
                                 MechanicsOf<Real>& out) const {
   // N_g phi_g = N_p phi_p - N_g (mesh approach)/R_g0, because R_g0 N_p = R_p0 N_g.
   out.mesh = mesh_.functions(phase, lag_per_approach_ * y[kMeshApproach]);
@@ -237,7 +239,7 @@ void GearPairSystem::kinematics(const MeshPhase& phase, ContactRegime regime, co
 }
 
 template <class Real>
-void GearPairSystem::mechanics(const MeshPhase& phase, ContactRegime regime, const Real* y,
+void GearPairSystem::mechanics(const MeshPhase& phase, const ContactRegime& regime, const Real* y,
                                MechanicsOf<Real>& out) const {
   kinematics(phase, regime, y, out);
   const DrivelineDynamics& d = dynamics_;

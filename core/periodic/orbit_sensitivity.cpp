@@ -119,7 +119,7 @@ class OrbitDifferentiator {
   }
 
   /// A state in a regime under friction arms that are given.
-  void evaluate(const MeshPhase& phase, ContactRegime regime, const MarchState& y,
+  void evaluate(const MeshPhase& phase, const ContactRegime& regime, const MarchState& y,
                 const FrictionArms& arms, DifferentiatedInstant& out) {
     Mechanics at;
     system_.mechanics(phase, regime, y.data(), at);
