@@ -40,6 +40,26 @@ CLI::Validator project_id() {
           ""};
 }
 
+/// Adds a flag for a number from `least` to `most`.
+void add_number(CLI::App& app, const std::string& flag, double& value, double least, double most,
+                const std::string& description) {
+  app.add_option(flag, value, description)->check(between(least, most))->capture_default_str();
+}
+void add_number(CLI::App& app, const std::string& flag, int& value, int least, int most,
+                const std::string& description) {
+  app.add_option(flag, value, description)->check(CLI::Range(least, most))->capture_default_str();
+}
+
+/// Adds a flag for the ids of projects, with commas between them.
+void add_projects(CLI::App& app, std::vector<std::string>& projects,
+                  const std::string& description) {
+  app.add_option("--projects", projects, description)
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->check(project_id());
+}
+
 /// Adds `tokens create|list|revoke|rotate`.
 void add_token_commands(CLI::App& app, Settings& settings) {
   TokenSettings& token = settings.token;
@@ -60,11 +80,8 @@ void add_token_commands(CLI::App& app, Settings& settings) {
         ->check(project_id());
   };
   const auto add_expiry = [&](CLI::App* command) {
-    command
-        ->add_option("--expire-days", token.expire_days,
-                     "The token is refused after this time; 0: never")
-        ->check(between(0, 36500))
-        ->capture_default_str();
+    add_number(*command, "--expire-days", token.expire_days, 0, 36500,
+               "The token is refused after this time; 0: never");
   };
   CLI::App* create = add("create", "Print a new token to standard output");
   add_name(create);
@@ -76,13 +93,8 @@ void add_token_commands(CLI::App& app, Settings& settings) {
               {"read", Scope::kRead}, {"write", Scope::kWrite}, {"admin", Scope::kAdmin}},
           CLI::ignore_case))
       ->default_str("write");
-  create
-      ->add_option("--projects", token.projects,
-                   "Projects that the token is for, e.g. gearboxes,axles. Default: all")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->check(project_id());
+  add_projects(*create, token.projects,
+               "Projects that the token is for, e.g. gearboxes,axles. Default: all");
   create->add_flag(
       "--certificate", token.of_certificate,
       "For the client whose TLS certificate has the common name NAME; prints no token");
@@ -108,11 +120,8 @@ void add_token_commands(CLI::App& app, Settings& settings) {
       "goes to DATABASE.token");
   add_name(rotate);
   add_expiry(rotate);
-  rotate
-      ->add_option("--overlap-hours", token.overlap_hours,
-                   "The former token stays valid for this time")
-      ->check(between(0, 8760))
-      ->capture_default_str();
+  add_number(*rotate, "--overlap-hours", token.overlap_hours, 0, 8760,
+             "The former token stays valid for this time");
 }
 
 /// Adds the subcommands, which run instead of the server; each requires --database.
@@ -150,11 +159,6 @@ CLI::Validator settings_file() {
           ""};
 }
 
-void add_seconds(CLI::App& app, const std::string& flag, double& value, double most,
-                 const std::string& description) {
-  app.add_option(flag, value, description)->check(between(0, most))->capture_default_str();
-}
-
 void add_flags(CLI::App& app, Settings& settings) {
   app.set_version_flag("--version",
                        std::string("tribodynd " TRIBODYN_VERSION " (") + kModelVersion + ")");
@@ -179,88 +183,57 @@ void add_flags(CLI::App& app, Settings& settings) {
       "the client whose certificate has the common name NAME may do");
   app.add_option("--database", settings.database,
                  "SQLite file; created if missing. Use a local disk");
-  app.add_option("--projects", settings.projects,
-                 "Projects beside `default`, e.g. gearboxes,axles. A new one gets the resources "
-                 "that every database begins with. A project of the database stays without the "
-                 "flag")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->check(project_id());
-  app.add_option("--threads", settings.threads,
-                 "Simulations computed at the same time; 0: one per processor. Recommended: 0")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
-  add_seconds(app, "--call-limit-seconds", settings.call_limit_seconds, 86400,
-              "Longest duration of a call, whatever deadline its client sets. Recommended: 30");
-  add_seconds(app, "--stream-limit-seconds", settings.stream_limit_seconds, 86400,
-              "Longest duration of a WatchSimulation or ReadHistory stream; clients resume by "
-              "themselves. Recommended: 3600");
-  app.add_option("--unread-limit-seconds", settings.unread_limit_seconds,
-                 "A stream ends if its client reads nothing for this time. Recommended: 60")
-      ->check(between(0.01, 86400))
-      ->capture_default_str();
-  add_seconds(app, "--heartbeat-seconds", settings.heartbeat_seconds, 3600,
-              "Interval of the heartbeats of a watch without events. Recommended: 15");
-  add_seconds(app, "--drain-seconds", settings.drain_seconds, kLongestDrainSeconds,
-              "Time that running simulations have to end after SIGTERM; the others run again after "
-              "the next start. A second SIGTERM ends the wait. Recommended: 20");
-  app.add_option("--waiting-simulations", settings.waiting_simulations,
-                 "Capacity of the queue. Further submissions are refused with a retry delay. One "
-                 "client may use at most 75 %. Recommended: 20000")
-      ->check(CLI::Range(1, 1'000'000))
-      ->capture_default_str();
-  app.add_option("--waiting-processor-hours", settings.waiting_processor_hours,
-                 "Capacity of the queue by estimated cost, in processor hours. Recommended: 100")
-      ->check(between(0.001, 1e6))
-      ->capture_default_str();
-  app.add_option(
-         "--principal-calls-per-second", settings.principal_calls_per_second,
-         "Calls a second that one token may make on average; those of five seconds may come "
-         "at once. Further ones are refused with a retry delay. 0: no limit. The owner has "
-         "none of these quotas. Recommended: 200")
-      ->check(between(0, 1e6))
-      ->capture_default_str();
-  app.add_option("--principal-streams", settings.principal_streams,
-                 "Streams that one token may have open. 0: no limit. Recommended: 200")
-      ->check(CLI::Range(0, 1'000'000))
-      ->capture_default_str();
-  app.add_option("--principal-processor-hours", settings.principal_processor_hours,
-                 "Estimated processor hours of waiting and running simulations of one token. 0: "
-                 "three quarters of --waiting-processor-hours may wait. Recommended: 0")
-      ->check(between(0, 1e6))
-      ->capture_default_str();
-  app.add_option("--project-calls-per-second", settings.project_calls_per_second,
-                 "Calls a second about one project that all tokens together may make on average. "
-                 "0: no limit. The owner makes as many as it wants. Recommended: 0")
-      ->check(between(0, 1e6))
-      ->capture_default_str();
-  app.add_option("--project-streams", settings.project_streams,
-                 "Streams about one project that all tokens together may have open. 0: no limit. "
-                 "Recommended: 0")
-      ->check(CLI::Range(0, 1'000'000))
-      ->capture_default_str();
-  app.add_option("--project-processor-hours", settings.project_processor_hours,
-                 "Estimated processor hours of waiting and running simulations of one project. "
-                 "0: no limit but that of the queue. Recommended: 0")
-      ->check(between(0, 1e6))
-      ->capture_default_str();
-  app.add_option("--project-megabytes", settings.project_megabytes,
-                 "Results of a project; beyond it a project accepts no further simulations until "
-                 "some are deleted. 0: no limit. Recommended: 0")
-      ->check(between(0, 1e9))
-      ->capture_default_str();
-  app.add_option("--keep-days", settings.keep_days,
-                 "Ended simulations are removed after this time, unless they are pinned; 0: never. "
-                 "Recommended: 0")
-      ->check(between(0, 36500))
-      ->capture_default_str();
-  app.add_option("--disk-budget-megabytes", settings.disk_budget_megabytes,
-                 "Disk space for ended simulations and their results. Above it those that ended "
-                 "first are removed; pinned simulations, lubricants and other resources do not "
-                 "count. 0: no limit. Recommended: half of the disk")
-      ->check(between(0, 1e9))
-      ->capture_default_str();
+  add_projects(app, settings.projects,
+               "Projects beside `default`, e.g. gearboxes,axles. A new one gets the resources "
+               "that every database begins with. A project of the database stays without the "
+               "flag");
+  add_number(app, "--threads", settings.threads, 0, 1024,
+             "Simulations computed at the same time; 0: one per processor. Recommended: 0");
+  add_number(app, "--call-limit-seconds", settings.call_limit_seconds, 0, 86400,
+             "Longest duration of a call, whatever deadline its client sets. Recommended: 30");
+  add_number(app, "--stream-limit-seconds", settings.stream_limit_seconds, 0, 86400,
+             "Longest duration of a WatchSimulation or ReadHistory stream; clients resume by "
+             "themselves. Recommended: 3600");
+  add_number(app, "--unread-limit-seconds", settings.unread_limit_seconds, 0.01, 86400,
+             "A stream ends if its client reads nothing for this time. Recommended: 60");
+  add_number(app, "--heartbeat-seconds", settings.heartbeat_seconds, 0, 3600,
+             "Interval of the heartbeats of a watch without events. Recommended: 15");
+  add_number(app, "--drain-seconds", settings.drain_seconds, 0, kLongestDrainSeconds,
+             "Time that running simulations have to end after SIGTERM; the others run again after "
+             "the next start. A second SIGTERM ends the wait. Recommended: 20");
+  add_number(app, "--waiting-simulations", settings.waiting_simulations, 1, 1'000'000,
+             "Capacity of the queue. Further submissions are refused with a retry delay. One "
+             "client may use at most 75 %. Recommended: 20000");
+  add_number(app, "--waiting-processor-hours", settings.waiting_processor_hours, 0.001, 1e6,
+             "Capacity of the queue by estimated cost, in processor hours. Recommended: 100");
+  add_number(app, "--principal-calls-per-second", settings.principal_calls_per_second, 0, 1e6,
+             "Calls a second that one token may make on average; those of five seconds may come "
+             "at once. Further ones are refused with a retry delay. 0: no limit. The owner has "
+             "none of these quotas. Recommended: 200");
+  add_number(app, "--principal-streams", settings.principal_streams, 0, 1'000'000,
+             "Streams that one token may have open. 0: no limit. Recommended: 200");
+  add_number(app, "--principal-processor-hours", settings.principal_processor_hours, 0, 1e6,
+             "Estimated processor hours of waiting and running simulations of one token. 0: "
+             "three quarters of --waiting-processor-hours may wait. Recommended: 0");
+  add_number(app, "--project-calls-per-second", settings.project_calls_per_second, 0, 1e6,
+             "Calls a second about one project that all tokens together may make on average. "
+             "0: no limit. The owner makes as many as it wants. Recommended: 0");
+  add_number(app, "--project-streams", settings.project_streams, 0, 1'000'000,
+             "Streams about one project that all tokens together may have open. 0: no limit. "
+             "Recommended: 0");
+  add_number(app, "--project-processor-hours", settings.project_processor_hours, 0, 1e6,
+             "Estimated processor hours of waiting and running simulations of one project. "
+             "0: no limit but that of the queue. Recommended: 0");
+  add_number(app, "--project-megabytes", settings.project_megabytes, 0, 1e9,
+             "Results of a project; beyond it a project accepts no further simulations until "
+             "some are deleted. 0: no limit. Recommended: 0");
+  add_number(app, "--keep-days", settings.keep_days, 0, 36500,
+             "Ended simulations are removed after this time, unless they are pinned; 0: never. "
+             "Recommended: 0");
+  add_number(app, "--disk-budget-megabytes", settings.disk_budget_megabytes, 0, 1e9,
+             "Disk space for ended simulations and their results. Above it those that ended "
+             "first are removed; pinned simulations, lubricants and other resources do not "
+             "count. 0: no limit. Recommended: half of the disk");
   app.add_option(
       "--port-file", settings.port_file,
       "File for the address, written when the server accepts calls and removed at its end");
@@ -326,14 +299,14 @@ std::optional<Settings> read_settings(const std::vector<std::string>& arguments,
     *exit_code = app.exit(error) == 0 ? kExitStopped : kExitBadSettings;
     return std::nullopt;
   }
+  std::string wrong;
   if (settings.tls.certificate.empty() != settings.tls.key.empty()) {
-    fmt::print(stderr, "tribodynd: --tls-certificate and --tls-key need each other\n");
-    *exit_code = kExitBadSettings;
-    return std::nullopt;
+    wrong = "--tls-certificate and --tls-key need each other";
+  } else if (settings.token.action == "create" && settings.token.name == kOwner) {
+    wrong = fmt::format("the server makes the token of {} by itself; use another name", kOwner);
   }
-  if (settings.token.action == "create" && settings.token.name == kOwner) {
-    fmt::print(stderr, "tribodynd: the server makes the token of {} by itself; use another name\n",
-               kOwner);
+  if (!wrong.empty()) {
+    fmt::print(stderr, "tribodynd: {}\n", wrong);
     *exit_code = kExitBadSettings;
     return std::nullopt;
   }
