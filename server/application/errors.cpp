@@ -35,19 +35,22 @@ google::rpc::BadRequest bad_request(const Violations& violations) {
   return out;
 }
 
-void add_resource(const std::string& type, const std::string& name, google::rpc::Status& status) {
+google::rpc::Status about_resource(google::rpc::Status status, const std::string& type,
+                                   const std::string& name) {
   google::rpc::ResourceInfo info;
   info.set_resource_type(type);
   info.set_resource_name(name);
   status.add_details()->PackFrom(info);
+  return status;
 }
 
 /// Adds a RetryInfo. Its delay is `seconds`, rounded up to a millisecond.
-void add_retry(double seconds, google::rpc::Status& status) {
+google::rpc::Status with_retry(google::rpc::Status status, double seconds) {
   google::rpc::RetryInfo info;
   *info.mutable_retry_delay() = google::protobuf::util::TimeUtil::MillisecondsToDuration(
       static_cast<std::int64_t>(std::ceil(1e3 * seconds)));
   status.add_details()->PackFrom(info);
+  return status;
 }
 
 // Retry delays [s]
@@ -56,10 +59,6 @@ constexpr int kStoreSeconds = 5;
 constexpr int kContentionSeconds = 1;
 constexpr int kMemorySeconds = 5;
 constexpr std::size_t kLongestCause = 500;  // [bytes], in the log
-
-}  // namespace
-
-namespace {
 
 google::rpc::Status make_error(google::rpc::Code code, const std::string& reason,
                                const std::string& message, const ErrorMetadata& metadata) {
@@ -113,38 +112,32 @@ google::rpc::Status with_violations(google::rpc::Status status, const Violations
 
 google::rpc::Status not_found(const std::string& type, const std::string& name,
                               const std::string& message, v1::ErrorReason reason) {
-  google::rpc::Status status = error(google::rpc::NOT_FOUND, reason, message, with_name({}, name));
-  add_resource(type, name, status);
-  return status;
+  return about_resource(error(google::rpc::NOT_FOUND, reason, message, {{"name", name}}), type,
+                        name);
 }
 
 google::rpc::Status already_exists(v1::ErrorReason reason, const std::string& type,
                                    const std::string& name, const std::string& message,
                                    const ErrorMetadata& metadata, const Violations& violations) {
-  google::rpc::Status status =
-      error(google::rpc::ALREADY_EXISTS, reason, message, with_name(metadata, name));
-  add_resource(type, name, status);
-  if (!violations.empty()) status.add_details()->PackFrom(bad_request(violations));
-  return status;
+  const google::rpc::Status status = about_resource(
+      error(google::rpc::ALREADY_EXISTS, reason, message, with_name(metadata, name)), type, name);
+  return violations.empty() ? status : with_violations(status, violations);
 }
 
 google::rpc::Status not_possible(v1::ErrorReason reason, const std::string& type,
                                  const std::string& name, const std::string& message,
                                  const ErrorMetadata& metadata) {
-  google::rpc::Status status =
-      error(google::rpc::FAILED_PRECONDITION, reason, message, with_name(metadata, name));
-  add_resource(type, name, status);
-  return status;
+  return about_resource(
+      error(google::rpc::FAILED_PRECONDITION, reason, message, with_name(metadata, name)), type,
+      name);
 }
 
 google::rpc::Status aborted(v1::ErrorReason reason, const std::string& type,
                             const std::string& name, const std::string& message, bool may_retry,
                             const ErrorMetadata& metadata) {
-  google::rpc::Status status =
-      error(google::rpc::ABORTED, reason, message, with_name(metadata, name));
-  add_resource(type, name, status);
-  if (may_retry) add_retry(kContentionSeconds, status);
-  return status;
+  const google::rpc::Status status = about_resource(
+      error(google::rpc::ABORTED, reason, message, with_name(metadata, name)), type, name);
+  return may_retry ? with_retry(status, kContentionSeconds) : status;
 }
 
 google::rpc::Status etag_mismatch(const std::string& type, const std::string& name,
@@ -169,35 +162,31 @@ google::rpc::Status store_failed(const StoreError& failure) {
                  "damage; a forced run computes a result again, and a backup restores the rest");
   }
   const bool is_misplaced = failure.kind() == StoreError::Kind::kMisplaced;
-  google::rpc::Status status =
+  return with_retry(
       is_misplaced
           ? error(google::rpc::UNAVAILABLE, v1::ERROR_REASON_DATABASE_MISPLACED,
                   "the database's file was deleted, renamed or replaced on the server; nothing is "
                   "written until it is back")
           : error(google::rpc::UNAVAILABLE, v1::ERROR_REASON_STORE_FAILED,
-                  "the database could not be read or written");
-  add_retry(kStoreSeconds, status);
-  return status;
+                  "the database could not be read or written"),
+      kStoreSeconds);
 }
 
 google::rpc::Status exhausted(v1::ErrorReason reason, const std::string& message,
                               double retry_seconds) {
-  google::rpc::Status status = error(google::rpc::RESOURCE_EXHAUSTED, reason, message,
-                                     {{"retry_seconds", fmt::format("{:.3g}", retry_seconds)}});
-  add_retry(retry_seconds, status);
-  return status;
+  return with_retry(error(google::rpc::RESOURCE_EXHAUSTED, reason, message,
+                          {{"retry_seconds", fmt::format("{:.3g}", retry_seconds)}}),
+                    retry_seconds);
 }
 
 google::rpc::Status over_quota(const std::string& taker, const std::string& quota,
                                const std::string& limit, double retry_seconds) {
-  google::rpc::Status status = error(
-      google::rpc::RESOURCE_EXHAUSTED, v1::ERROR_REASON_QUOTA_EXCEEDED,
-      fmt::format("the quota of {} is {}; try again in {:.3g} s", taker, limit, retry_seconds),
-      {{"quota", quota},
-       {"limit", limit},
-       {"retry_seconds", fmt::format("{:.3g}", retry_seconds)}});
-  add_retry(retry_seconds, status);
-  return status;
+  const std::string seconds = fmt::format("{:.3g}", retry_seconds);
+  return with_retry(
+      error(google::rpc::RESOURCE_EXHAUSTED, v1::ERROR_REASON_QUOTA_EXCEEDED,
+            fmt::format("the quota of {} is {}; try again in {} s", taker, limit, seconds),
+            {{"quota", quota}, {"limit", limit}, {"retry_seconds", seconds}}),
+      retry_seconds);
 }
 
 google::rpc::Status deadline_exceeded() {
@@ -243,10 +232,9 @@ google::rpc::Status project_not_granted(const std::string& project) {
 }
 
 google::rpc::Status shutting_down() {
-  google::rpc::Status status = error(google::rpc::UNAVAILABLE, v1::ERROR_REASON_SHUTTING_DOWN,
-                                     "the server is shutting down");
-  add_retry(kRestartSeconds, status);
-  return status;
+  return with_retry(error(google::rpc::UNAVAILABLE, v1::ERROR_REASON_SHUTTING_DOWN,
+                          "the server is shutting down"),
+                    kRestartSeconds);
 }
 
 google::rpc::Status internal_error(std::string_view cause) {
@@ -260,11 +248,9 @@ google::rpc::Status internal_error(std::string_view cause) {
 
 google::rpc::Status out_of_memory() {
   spdlog::error("event=out_of_memory");
-  google::rpc::Status status =
-      error(google::rpc::RESOURCE_EXHAUSTED, v1::ERROR_REASON_OUT_OF_MEMORY,
-            "the server has no memory left for this request");
-  add_retry(kMemorySeconds, status);
-  return status;
+  return with_retry(error(google::rpc::RESOURCE_EXHAUSTED, v1::ERROR_REASON_OUT_OF_MEMORY,
+                          "the server has no memory left for this request"),
+                    kMemorySeconds);
 }
 
 }  // namespace tribodyn::server
