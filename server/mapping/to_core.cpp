@@ -93,18 +93,25 @@ Lubricant to_core(const v1::Lubricant& message) {
           .law_parameters = law_parameters_of(message)};
 }
 
-Roughness roughness(const v1::Surface& message) {
+template <class Message>
+Roughness roughness(const Message& message) {
   return {.asperity_density = message.asperity_density_per_square_metre(),
           .asperity_radius = message.asperity_radius_metres(),
           .composite_rms_height = message.composite_rms_height_metres()};
 }
+template Roughness roughness(const v1::Surface&);
+template Roughness roughness(const v1::EvaluateContactRequest&);
 
-BoundaryFriction boundary_friction(const v1::Surface& message) {
+template <class Message>
+BoundaryFriction boundary_friction(const Message& message) {
   return {.tribofilm_shear_strength = message.tribofilm_shear_strength_pascals(),
           .asperity_friction_coefficient = message.asperity_friction_coefficient()};
 }
+template BoundaryFriction boundary_friction(const v1::Surface&);
+template BoundaryFriction boundary_friction(const v1::EvaluateContactRequest&);
 
-Solid solid(const v1::GearSet& message) {
+template <class Message>
+Solid solid(const Message& message) {
   return {
       .youngs_modulus = message.youngs_modulus_pascals(),
       .poissons_ratio = message.poissons_ratio(),
@@ -112,6 +119,8 @@ Solid solid(const v1::GearSet& message) {
       .density = message.solid_density_kilograms_per_cubic_metre(),
       .specific_heat_capacity = message.solid_specific_heat_capacity_joules_per_kilogram_kelvin()};
 }
+template Solid solid(const v1::GearSet&);
+template Solid solid(const v1::EvaluateContactRequest&);
 
 Vehicle to_core(const v1::Vehicle& message) {
   return {.mass = message.mass_kilograms(),
@@ -178,26 +187,6 @@ ContactConditions contact_conditions(const v1::EvaluateContactRequest& message) 
           .velocity_1_y = message.pinion_velocity_y_metres_per_second(),
           .velocity_2_x = message.gear_velocity_x_metres_per_second(),
           .velocity_2_y = message.gear_velocity_y_metres_per_second()};
-}
-
-Roughness roughness(const v1::EvaluateContactRequest& message) {
-  return {.asperity_density = message.asperity_density_per_square_metre(),
-          .asperity_radius = message.asperity_radius_metres(),
-          .composite_rms_height = message.composite_rms_height_metres()};
-}
-
-BoundaryFriction boundary_friction(const v1::EvaluateContactRequest& message) {
-  return {.tribofilm_shear_strength = message.tribofilm_shear_strength_pascals(),
-          .asperity_friction_coefficient = message.asperity_friction_coefficient()};
-}
-
-Solid solid(const v1::EvaluateContactRequest& message) {
-  return {
-      .youngs_modulus = message.youngs_modulus_pascals(),
-      .poissons_ratio = message.poissons_ratio(),
-      .thermal_conductivity = message.solid_thermal_conductivity_watts_per_metre_kelvin(),
-      .density = message.solid_density_kilograms_per_cubic_metre(),
-      .specific_heat_capacity = message.solid_specific_heat_capacity_joules_per_kilogram_kelvin()};
 }
 
 StatedLimits to_core(const v1::StatedLimits& message) {

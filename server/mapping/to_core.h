@@ -21,9 +21,15 @@ namespace tribodyn::server {
 // These functions convert messages to core values field by field. They check nothing: see
 // check_message.h.
 Lubricant to_core(const v1::Lubricant& message);
-Roughness roughness(const v1::Surface& message);
-BoundaryFriction boundary_friction(const v1::Surface& message);
-Solid solid(const v1::GearSet& message);
+
+// The fields of these have the same names in resources and in an explicit contact.
+template <class Message>  // v1::Surface or v1::EvaluateContactRequest
+Roughness roughness(const Message& message);
+template <class Message>  // v1::Surface or v1::EvaluateContactRequest
+BoundaryFriction boundary_friction(const Message& message);
+template <class Message>  // v1::GearSet or v1::EvaluateContactRequest
+Solid solid(const Message& message);
+
 Vehicle to_core(const v1::Vehicle& message);
 ModelOptions to_core(const v1::ModelOptions& message);
 StatedLimits to_core(const v1::StatedLimits& message);
@@ -31,10 +37,6 @@ StatedLimits to_core(const v1::StatedLimits& message);
 /// Converts the first three slots only; the core's check() refuses any other number.
 GearSet to_core(const v1::GearSet& message);
 
-// These functions convert the parts of an explicit contact.
 ContactConditions contact_conditions(const v1::EvaluateContactRequest& message);
-Roughness roughness(const v1::EvaluateContactRequest& message);
-BoundaryFriction boundary_friction(const v1::EvaluateContactRequest& message);
-Solid solid(const v1::EvaluateContactRequest& message);
 
 }  // namespace tribodyn::server
