@@ -10,6 +10,7 @@
 #include "server/application/campaigns.h"
 #include "server/application/computed_fields.h"
 #include "server/application/errors.h"
+#include "server/application/label_update.h"
 #include "server/application/list_filter.h"
 #include "server/application/project_space.h"
 #include "server/application/request_text.h"

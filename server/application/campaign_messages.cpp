@@ -59,12 +59,6 @@ CampaignBudget to_budget(const v1::CampaignBudget& budget) {
   return {budget.processor_seconds(), budget.points()};
 }
 
-CampaignLabels labels_of(const v1::Campaign& campaign) {
-  CampaignLabels out;
-  for (const v1::Label& each : campaign.labels()) out.emplace_back(each.key(), each.value());
-  return out;
-}
-
 google::rpc::Status no_campaign(const std::string& name) {
   return not_found(kCampaignType, name, name + " does not exist");
 }

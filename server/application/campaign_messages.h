@@ -18,7 +18,6 @@ inline constexpr int kCampaignWrites = 10;
 /// Returns the stored campaign as a message, without what only GetCampaign answers.
 v1::Campaign to_message(Application& application, const StoredCampaign& stored);
 CampaignBudget to_budget(const v1::CampaignBudget& budget);
-CampaignLabels labels_of(const v1::Campaign& campaign);
 
 /// Returns NOT_FOUND.
 google::rpc::Status no_campaign(const std::string& name);

@@ -16,8 +16,8 @@ Outcome<Resource> import_resource(Application& application, const Request& reque
   Violations violations;
   const std::string name = new_name<Resource>(Kind<Resource>::id(request),
                                               Kind<Resource>::of(request).name(), violations);
-  const auto accepted = read(
-      request, name, resource_lookup(application.store, call.project, call.limits), violations);
+  const ResourceLookup lookup = resource_lookup(application.store, call.project, call.limits);
+  const auto accepted = read(request, name, lookup, violations);
   if (!violations.empty() || !accepted) return invalid(violations);
   return store_new(application, *accepted, request.validate_only(), call);
 }
@@ -28,10 +28,7 @@ Outcome<v1::Lubricant> import_lubricant(Application& application,
                                         const v1::ImportLubricantRequest& request,
                                         const CallContext& call) {
   return import_resource<v1::Lubricant>(
-      application, request,
-      [](const v1::ImportLubricantRequest& stated, const std::string& name,
-         const ResourceLookup& lookup,
-         Violations& violations) { return import_lubricant(stated, name, lookup, violations); },
+      application, request, [](auto&... arguments) { return import_lubricant(arguments...); },
       call);
 }
 
@@ -39,22 +36,14 @@ Outcome<v1::GearSet> import_gear_set(Application& application,
                                      const v1::ImportGearSetRequest& request,
                                      const CallContext& call) {
   return import_resource<v1::GearSet>(
-      application, request,
-      [](const v1::ImportGearSetRequest& stated, const std::string& name,
-         const ResourceLookup& lookup,
-         Violations& violations) { return import_gear_set(stated, name, lookup, violations); },
-      call);
+      application, request, [](auto&... arguments) { return import_gear_set(arguments...); }, call);
 }
 
 Outcome<v1::Surface> import_surface_profiles(Application& application,
                                              const v1::ImportSurfaceProfilesRequest& request,
                                              const CallContext& call) {
   return import_resource<v1::Surface>(
-      application, request,
-      [](const v1::ImportSurfaceProfilesRequest& stated, const std::string& name,
-         const ResourceLookup& lookup,
-         Violations& violations) { return import_surface(stated, name, lookup, violations); },
-      call);
+      application, request, [](auto&... arguments) { return import_surface(arguments...); }, call);
 }
 
 }  // namespace tribodyn::server

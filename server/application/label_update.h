@@ -5,6 +5,7 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "server/application/element_limits.h"
 #include "server/contract/check_message.h"
@@ -12,6 +13,14 @@
 #include "server/contract/resource_names.h"
 
 namespace tribodyn::server {
+
+/// Returns the labels of a message as they are stored.
+template <class Resource>
+std::vector<std::pair<std::string, std::string>> labels_of(const Resource& message) {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const v1::Label& each : message.labels()) out.emplace_back(each.key(), each.value());
+  return out;
+}
 
 /// Copies the display name and the labels that an update changes from `stated` into `target`, and
 /// checks them. `path`: of `stated` in the request. An empty mask means the fields that are set.

@@ -389,10 +389,8 @@ Outcome<v1::Simulation> update_stored(Application& application,
     take_over_labels(request.update_mask(), request.simulation(), "simulation", changed,
                      violations);
     if (!violations.empty()) return invalid(violations);
-    std::vector<std::pair<std::string, std::string>> labels;
-    for (const v1::Label& each : changed.labels()) labels.emplace_back(each.key(), each.value());
     const auto updated = application.store.relabel_simulation(present, changed.SerializeAsString(),
-                                                              labels, call.limits);
+                                                              labels_of(changed), call.limits);
     if (updated) return to_message(application, *updated);
   }
   return contention(kSimulationType, name);
