@@ -65,31 +65,19 @@ StoredCampaign stored_campaign(const SQLite::Statement& query) {
 }
 
 std::int64_t next_campaign_number(Connection& db, const std::string& project) {
-  Prepared update(db,
-                  "UPDATE projects SET last_campaign = last_campaign + 1 WHERE name = ? "
-                  "RETURNING last_campaign");
-  update.bind(1, project);
-  if (!update.executeStep()) throw SQLite::Exception("no such project");
-  const std::int64_t number = update.getColumn(0).getInt64();
-  update.executeStep();  // to its end: only then is it done
-  return number;
-}
-
-/// Binds the relative name of a revision as full name and number.
-void bind_revision(Prepared& statement, int at, const std::string& project,
-                   const std::string& revision) {
-  const std::size_t end = revision.find('@');
-  statement.bind(at, full_name(project, revision.substr(0, end)));
-  statement.bind(at + 1, std::stoi(revision.substr(end + 1)));
+  const auto number =
+      Prepared(db,
+               "UPDATE projects SET last_campaign = last_campaign + 1 WHERE name = ? "
+               "RETURNING last_campaign",
+               project)
+          .returned();
+  if (!number) throw SQLite::Exception("no such project");
+  return *number;
 }
 
 void insert_campaign_labels(Connection& db, std::int64_t id, const CampaignLabels& labels) {
   for (const auto& [key, value] : labels) {
-    Prepared label(db, "INSERT INTO campaign_labels VALUES (?, ?, ?)");
-    label.bind(1, key);
-    label.bind(2, value);
-    label.bind(3, id);
-    label.exec();
+    execute(db, "INSERT INTO campaign_labels VALUES (?, ?, ?)", key, value, id);
   }
 }
 
@@ -99,10 +87,8 @@ void insert_lubricants(Connection& db, std::int64_t id, const std::string& proje
                   "INSERT INTO campaign_lubricants VALUES (?, (SELECT revision_id FROM "
                   "revision_names WHERE name = ? AND revision = ?)) ON CONFLICT DO NOTHING");
   for (const std::string& each : revisions) {
-    insert.bind(1, id);
-    bind_revision(insert, 2, project, each);
-    insert.exec();
-    insert.reset();
+    const RevisionRow row = revision_row(project, each);
+    insert.run(id, row.name, row.number);
   }
 }
 
@@ -116,46 +102,30 @@ CampaignAdded insert_campaign(Connection& db, const NewCampaign& campaign, Micro
               std::move(*stored)};
     }
   }
-  const std::int64_t number = next_campaign_number(db, campaign.project);
-  Prepared insert(
-      db,
-      "INSERT INTO campaigns (project, number, state, create_time, request_id, request_hash, "
-      "input_hash, model_version, platform, client, principal, candidates, conditions, "
-      "cost_seconds, budget_seconds, budget_points, stored_bytes, request, candidate_table, "
-      "lubricant, gear_set, "
-      "surface, vehicle) VALUES (?, ?, 1, ?, nullif(?, ''), ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-      "?, "
-      "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
-      "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
-      "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
-      "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?))");
-  int at = 0;
-  const auto bind = [&](const auto& value) { insert.bind(++at, value); };
-  bind(campaign.project);
-  bind(number);
-  bind(now);
-  bind(campaign.request_id);
-  bind(campaign.request_hash);
-  bind(campaign.input_hash);
-  bind(campaign.model_version);
-  bind(campaign.platform);
-  bind(campaign.client);
-  bind(campaign.principal);
-  bind(campaign.candidates);
-  bind(campaign.conditions);
-  bind(campaign.cost_seconds);
-  bind(campaign.budget.processor_seconds);
-  bind(campaign.budget.points);
-  bind(static_cast<std::int64_t>(campaign.request.size() + campaign.candidate_table.size()));
-  bind_blob(insert, ++at, campaign.request);
-  bind_blob(insert, ++at, campaign.candidate_table);
+  std::vector<RevisionRow> revisions;
   for (const std::string* revision : {&campaign.lubricant_revision, &campaign.gear_set_revision,
                                       &campaign.surface_revision, &campaign.vehicle_revision}) {
-    bind_revision(insert, at + 1, campaign.project,
-                  revision->empty() ? campaign.lubricant_revision : *revision);
-    at += 2;
+    revisions.push_back(revision_row(campaign.project,
+                                     revision->empty() ? campaign.lubricant_revision : *revision));
   }
-  insert.exec();
+  execute(db,
+          "INSERT INTO campaigns (project, number, state, create_time, request_id, request_hash, "
+          "input_hash, model_version, platform, client, principal, candidates, conditions, "
+          "cost_seconds, budget_seconds, budget_points, stored_bytes, request, candidate_table, "
+          "lubricant, gear_set, surface, vehicle) "
+          "VALUES (?, ?, 1, ?, nullif(?, ''), ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+          "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
+          "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
+          "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
+          "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?))",
+          campaign.project, next_campaign_number(db, campaign.project), now, campaign.request_id,
+          campaign.request_hash, campaign.input_hash, campaign.model_version, campaign.platform,
+          campaign.client, campaign.principal, campaign.candidates, campaign.conditions,
+          campaign.cost_seconds, campaign.budget.processor_seconds, campaign.budget.points,
+          static_cast<std::int64_t>(campaign.request.size() + campaign.candidate_table.size()),
+          Blob{campaign.request}, Blob{campaign.candidate_table}, revisions[0].name,
+          revisions[0].number, revisions[1].name, revisions[1].number, revisions[2].name,
+          revisions[2].number, revisions[3].name, revisions[3].number);
   const std::int64_t id = db.getLastInsertRowid();
   insert_campaign_labels(db, id, campaign.labels);
   insert_lubricants(db, id, campaign.project, campaign.candidate_lubricants);
@@ -163,49 +133,40 @@ CampaignAdded insert_campaign(Connection& db, const NewCampaign& campaign, Micro
 }
 
 std::optional<StoredCampaign> query_campaign(Connection& db, std::int64_t id) {
-  Prepared query(db, std::string(kSelectCampaigns) + "WHERE id = ?");
-  query.bind(1, id);
-  if (!query.executeStep()) return std::nullopt;
-  return stored_campaign(query);
+  Prepared query(db, std::string(kSelectCampaigns) + "WHERE id = ?", id);
+  return query.first(stored_campaign);
 }
 
 std::optional<StoredCampaign> query_numbered_campaign(Connection& db, const std::string& project,
                                                       std::int64_t number) {
-  Prepared query(db, std::string(kSelectCampaigns) + "WHERE project = ? AND number = ?");
-  query.bind(1, project);
-  query.bind(2, number);
-  if (!query.executeStep()) return std::nullopt;
-  return stored_campaign(query);
+  Prepared query(db, std::string(kSelectCampaigns) + "WHERE project = ? AND number = ?", project,
+                 number);
+  return query.first(stored_campaign);
 }
 
 std::optional<StoredCampaign> query_campaign_of_request(Connection& db, const std::string& project,
                                                         const std::string& request_id) {
-  Prepared query(db, std::string(kSelectCampaigns) + "WHERE project = ? AND request_id = ?");
-  query.bind(1, project);
-  query.bind(2, request_id);
-  if (!query.executeStep()) return std::nullopt;
-  return stored_campaign(query);
+  Prepared query(db, std::string(kSelectCampaigns) + "WHERE project = ? AND request_id = ?",
+                 project, request_id);
+  return query.first(stored_campaign);
 }
 
 Page<StoredCampaign> query_campaigns(Connection& db, const CampaignQuery& wanted) {
   const Condition all = list_condition(db, "campaigns", wanted.project, wanted.restrictions);
-  const auto bind_all = [&all](auto& statement) {
-    int at = 0;
-    for (const PropertyValue& value : all.values) bind_value(statement, ++at, value);
-    return at;
-  };
   SQLite::Statement query(db, std::string(kSelectCampaigns) + "WHERE " + all.sql +
                                   " AND (? = 0 OR number < ?) ORDER BY number DESC LIMIT ?");
-  int at = bind_all(query);
-  query.bind(++at, wanted.before);
-  query.bind(++at, wanted.before);
-  query.bind(++at, wanted.limit + 1);
+  std::vector<PropertyValue> values = all.values;
+  const std::int64_t before = wanted.before;
+  for (const std::int64_t each : {before, before, std::int64_t{wanted.limit + 1}}) {
+    values.emplace_back(each);
+  }
+  bind_values(query, values);
   Page<StoredCampaign> out;
   while (query.executeStep()) out.rows.push_back(stored_campaign(query));
   out.more = out.rows.size() > static_cast<std::size_t>(wanted.limit);
   if (out.more) out.rows.pop_back();
   SQLite::Statement count(db, "SELECT count(*) FROM campaigns WHERE " + all.sql);
-  bind_all(count);
+  bind_values(count, all.values);
   count.executeStep();
   out.total = count.getColumn(0).getInt64();
   return out;
@@ -213,18 +174,14 @@ Page<StoredCampaign> query_campaigns(Connection& db, const CampaignQuery& wanted
 
 bool relabel_campaign(Connection& db, std::int64_t id, const std::string& before,
                       const std::string& request, const CampaignLabels& labels) {
-  Prepared update(db,
-                  "UPDATE campaigns SET request = ?1, stored_bytes = stored_bytes + ?4 "
-                  "WHERE id = ?2 AND request = ?3");
-  bind_blob(update, 1, request);
-  update.bind(2, id);
-  bind_blob(update, 3, before);
-  update.bind(4,
+  const int changed =
+      execute(db,
+              "UPDATE campaigns SET request = ?1, stored_bytes = stored_bytes + ?4 "
+              "WHERE id = ?2 AND request = ?3",
+              Blob{request}, id, Blob{before},
               static_cast<std::int64_t>(request.size()) - static_cast<std::int64_t>(before.size()));
-  if (update.exec() == 0) return false;
-  Prepared remove(db, "DELETE FROM campaign_labels WHERE campaign = ?");
-  remove.bind(1, id);
-  remove.exec();
+  if (changed == 0) return false;
+  execute(db, "DELETE FROM campaign_labels WHERE campaign = ?", id);
   insert_campaign_labels(db, id, labels);
   return true;
 }
@@ -234,9 +191,8 @@ std::optional<CandidatesAdded::Kind> query_append(Connection& db, std::int64_t i
                                                   const std::string& request_hash) {
   if (request_id.empty()) return std::nullopt;
   Prepared query(db,
-                 "SELECT request_hash FROM campaign_appends WHERE campaign = ? AND request_id = ?");
-  query.bind(1, id);
-  query.bind(2, request_id);
+                 "SELECT request_hash FROM campaign_appends WHERE campaign = ? AND request_id = ?",
+                 id, request_id);
   if (!query.executeStep()) return std::nullopt;
   return query.getColumn(0).getString() == request_hash ? CandidatesAdded::Kind::kRepeated
                                                         : CandidatesAdded::Kind::kRequestIdTaken;
@@ -245,8 +201,8 @@ std::optional<CandidatesAdded::Kind> query_append(Connection& db, std::int64_t i
 int query_created_candidates(Connection& db, std::int64_t id) {
   Prepared query(db,
                  "SELECT coalesce((SELECT min(first_candidate) FROM campaign_appends WHERE "
-                 "campaign = ?1), (SELECT candidates FROM campaigns WHERE id = ?1), 0)");
-  query.bind(1, id);
+                 "campaign = ?1), (SELECT candidates FROM campaigns WHERE id = ?1), 0)",
+                 id);
   query.executeStep();
   return query.getColumn(0).getInt();
 }
@@ -263,69 +219,50 @@ CandidatesAdded insert_candidates(Connection& db, const NewCandidates& added, Mi
                   "stored_bytes = stored_bytes + length(?3) - length(candidate_table), "
                   "lost_attempts = CASE state WHEN 3 THEN ?7 ELSE lost_attempts END, "
                   "end_time = NULL, state = CASE state WHEN 3 THEN 1 ELSE state END "
-                  "WHERE id = ?1 AND state <= 3 AND candidates = ?6 RETURNING project");
-  update.bind(1, added.campaign);
-  update.bind(2, added.candidates);
-  bind_blob(update, 3, added.candidate_table);
-  update.bind(4, added.input_hash);
-  update.bind(5, added.cost_seconds);
-  update.bind(6, added.candidates_before);
-  update.bind(7, lost_attempts);
+                  "WHERE id = ?1 AND state <= 3 AND candidates = ?6 RETURNING project",
+                  added.campaign, added.candidates, Blob{added.candidate_table}, added.input_hash,
+                  added.cost_seconds, added.candidates_before, lost_attempts);
   if (!update.executeStep()) return {kChanged, query_campaign(db, added.campaign)};
   const std::string project = update.getColumn(0).getString();
   update.executeStep();  // to its end: only then is it done
-  Prepared insert(db, "INSERT INTO campaign_appends VALUES (?, ?, nullif(?, ''), ?, ?)");
-  insert.bind(1, added.campaign);
-  insert.bind(2, added.candidates_before);
-  insert.bind(3, added.request_id);
-  insert.bind(4, added.request_hash);
-  insert.bind(5, now);
-  insert.exec();
+  execute(db, "INSERT INTO campaign_appends VALUES (?, ?, nullif(?, ''), ?, ?)", added.campaign,
+          added.candidates_before, added.request_id, added.request_hash, now);
   insert_lubricants(db, added.campaign, project, added.candidate_lubricants);
   return {kAdded, query_campaign(db, added.campaign)};
 }
 
 std::string query_candidate_table(Connection& db, std::int64_t id) {
-  Prepared query(db, "SELECT candidate_table FROM campaigns WHERE id = ?");
-  query.bind(1, id);
+  Prepared query(db, "SELECT candidate_table FROM campaigns WHERE id = ?", id);
   return query.executeStep() ? query.getColumn(0).getString() : std::string();
 }
 
 std::optional<StoredCampaign> change_campaign(Connection& db, const CampaignChange& change) {
-  Prepared update(db,
-                  "UPDATE campaigns SET state = ?2, stop_reason = ?3, stop_message = ?4, "
-                  "end_time = CASE WHEN ?2 >= 3 THEN ?5 END, "
-                  "budget_seconds = coalesce(?6, budget_seconds), "
-                  "budget_points = coalesce(?7, budget_points), lost_attempts = ?9, "
-                  "lost_candidates = 0 "
-                  "WHERE id = ?1 AND state <= 2 AND state = coalesce(?8, state)");
-  update.bind(1, change.id);
-  update.bind(2, static_cast<int>(change.to));
-  update.bind(3, change.reason);
-  update.bind(4, change.message);
-  update.bind(5, change.time);
+  std::optional<double> seconds;
+  std::optional<std::int64_t> points;
   if (change.budget) {
-    update.bind(6, change.budget->processor_seconds);
-    update.bind(7, change.budget->points);
+    seconds = change.budget->processor_seconds;
+    points = change.budget->points;
   }
-  if (change.from) update.bind(8, static_cast<int>(*change.from));
-  update.bind(9, change.lost_attempts);
-  if (update.exec() == 0) return std::nullopt;
+  const int changed =
+      execute(db,
+              "UPDATE campaigns SET state = ?2, stop_reason = ?3, stop_message = ?4, "
+              "end_time = CASE WHEN ?2 >= 3 THEN ?5 END, "
+              "budget_seconds = coalesce(?6, budget_seconds), "
+              "budget_points = coalesce(?7, budget_points), lost_attempts = ?9, "
+              "lost_candidates = 0 "
+              "WHERE id = ?1 AND state <= 2 AND state = coalesce(?8, state)",
+              change.id, change.to, change.reason, change.message, change.time, seconds, points,
+              change.from, change.lost_attempts);
+  if (changed == 0) return std::nullopt;
   if (has_ended(change.to)) {
-    Prepared remove(db, "DELETE FROM campaign_suspects WHERE campaign = ?");
-    remove.bind(1, change.id);
-    remove.exec();
+    execute(db, "DELETE FROM campaign_suspects WHERE campaign = ?", change.id);
   }
   return query_campaign(db, change.id);
 }
 
 std::int64_t remove_campaign(Connection& db, std::int64_t id) {
-  Prepared remove(db, "DELETE FROM campaigns WHERE id = ? RETURNING stored_bytes");
-  remove.bind(1, id);
-  if (!remove.executeStep()) return 0;
-  const std::int64_t bytes = remove.getColumn(0).getInt64();
-  remove.executeStep();  // the row is removed only when the statement is finished
-  return bytes;
+  Prepared remove(db, "DELETE FROM campaigns WHERE id = ? RETURNING stored_bytes", id);
+  return remove.returned().value_or(0);
 }
 
 }  // namespace tribodyn::server

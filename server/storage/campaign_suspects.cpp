@@ -33,32 +33,23 @@ std::vector<LostSuspect> query_lost_suspects(Connection& db) {
 /// Halves a suspect of several candidates.
 void halve(Connection& db, const LostSuspect& suspect) {
   const std::int64_t first = suspect.rows.count / suspect.conditions / 2 * suspect.conditions;
-  Prepared shorten(db,
-                   "UPDATE campaign_suspects SET rows = ?3, is_begun = 0 WHERE campaign = ?1 AND "
-                   "first_row = ?2");
-  shorten.bind(1, suspect.campaign);
-  shorten.bind(2, suspect.rows.first);
-  shorten.bind(3, first);
-  shorten.exec();
-  Prepared insert(db, "INSERT INTO campaign_suspects VALUES (?, ?, ?, 0, 0)");
-  insert.bind(1, suspect.campaign);
-  insert.bind(2, suspect.rows.first + first);
-  insert.bind(3, suspect.rows.count - first);
-  insert.exec();
+  execute(db,
+          "UPDATE campaign_suspects SET rows = ?3, is_begun = 0 WHERE campaign = ?1 AND "
+          "first_row = ?2",
+          suspect.campaign, suspect.rows.first, first);
+  execute(db, "INSERT INTO campaign_suspects VALUES (?, ?, ?, 0, 0)", suspect.campaign,
+          suspect.rows.first + first, suspect.rows.count - first);
 }
 
 /// Counts the lost attempt of a suspect of one candidate.
 void count_attempt(Connection& db, const LostSuspect& suspect) {
-  Prepared count(db,
-                 "UPDATE campaign_suspects SET lost_attempts = lost_attempts + 1, is_begun = 0 "
-                 "WHERE campaign = ? AND first_row = ?");
-  count.bind(1, suspect.campaign);
-  count.bind(2, suspect.rows.first);
-  count.exec();
+  execute(db,
+          "UPDATE campaign_suspects SET lost_attempts = lost_attempts + 1, is_begun = 0 "
+          "WHERE campaign = ? AND first_row = ?",
+          suspect.campaign, suspect.rows.first);
   if (suspect.lost_attempts + 1 != kMaximumLostAttempts) return;
-  Prepared refuse(db, "UPDATE campaigns SET lost_candidates = lost_candidates + 1 WHERE id = ?");
-  refuse.bind(1, suspect.campaign);
-  refuse.exec();
+  execute(db, "UPDATE campaigns SET lost_candidates = lost_candidates + 1 WHERE id = ?",
+          suspect.campaign);
 }
 
 }  // namespace
@@ -83,8 +74,8 @@ std::vector<std::int64_t> resume_campaigns(Connection& db) {
 std::optional<StoredCampaign> begin_campaign(Connection& db, std::int64_t id) {
   Prepared update(db,
                   "UPDATE campaigns SET lost_attempts = lost_attempts + 1 "
-                  "WHERE id = ? AND state <= 2 RETURNING lost_attempts, lost_candidates");
-  update.bind(1, id);
+                  "WHERE id = ? AND state <= 2 RETURNING lost_attempts, lost_candidates",
+                  id);
   if (!update.executeStep()) return std::nullopt;
   const int attempts = update.getColumn(0).getInt(), candidates = update.getColumn(1).getInt();
   update.executeStep();  // to its end: only then is it done
@@ -105,17 +96,15 @@ std::optional<StoredCampaign> begin_campaign(Connection& db, std::int64_t id) {
 }
 
 void release_campaign(Connection& db, std::int64_t id) {
-  Prepared update(db, "UPDATE campaigns SET lost_attempts = 0 WHERE id = ? AND state <= 2");
-  update.bind(1, id);
-  update.exec();
+  execute(db, "UPDATE campaigns SET lost_attempts = 0 WHERE id = ? AND state <= 2", id);
   end_suspects(db, id);
 }
 
 std::vector<CampaignSuspect> query_suspects(Connection& db, std::int64_t id) {
   Prepared query(db,
                  "SELECT first_row, rows, lost_attempts FROM campaign_suspects WHERE campaign = ? "
-                 "ORDER BY first_row");
-  query.bind(1, id);
+                 "ORDER BY first_row",
+                 id);
   std::vector<CampaignSuspect> out;
   while (query.executeStep()) {
     out.push_back({{query.getColumn(0).getInt64(), query.getColumn(1).getInt64()},
@@ -125,37 +114,26 @@ std::vector<CampaignSuspect> query_suspects(Connection& db, std::int64_t id) {
 }
 
 void begin_suspect(Connection& db, std::int64_t id, const RowRange& rows) {
-  Prepared begin(db,
-                 "INSERT INTO campaign_suspects SELECT id, ?2, ?3, 1, 0 FROM campaigns "
-                 "WHERE id = ?1 AND state <= 2 "
-                 "ON CONFLICT (campaign, first_row) DO UPDATE SET is_begun = 1");
-  begin.bind(1, id);
-  begin.bind(2, rows.first);
-  begin.bind(3, rows.count);
-  begin.exec();
+  execute(db,
+          "INSERT INTO campaign_suspects SELECT id, ?2, ?3, 1, 0 FROM campaigns "
+          "WHERE id = ?1 AND state <= 2 "
+          "ON CONFLICT (campaign, first_row) DO UPDATE SET is_begun = 1",
+          id, rows.first, rows.count);
 }
 
 void end_suspects(Connection& db, std::int64_t id) {
-  Prepared end(db, "UPDATE campaign_suspects SET is_begun = 0 WHERE campaign = ? AND is_begun = 1");
-  end.bind(1, id);
-  end.exec();
+  execute(db, "UPDATE campaign_suspects SET is_begun = 0 WHERE campaign = ? AND is_begun = 1", id);
 }
 
 void clear_suspects(Connection& db, std::int64_t id, const RowRange& tile) {
-  Prepared remove(db,
-                  "DELETE FROM campaign_suspects WHERE campaign = ?1 AND first_row >= ?2 AND "
-                  "first_row + rows <= ?3");
-  remove.bind(1, id);
-  remove.bind(2, tile.first);
-  remove.bind(3, tile.first + tile.count);
-  remove.exec();
-  Prepared shorten(db,
-                   "UPDATE campaign_suspects SET rows = first_row + rows - ?3, first_row = ?3, "
-                   "is_begun = 0 WHERE campaign = ?1 AND first_row = ?2");
-  shorten.bind(1, id);
-  shorten.bind(2, tile.first);
-  shorten.bind(3, tile.first + tile.count);
-  shorten.exec();
+  execute(db,
+          "DELETE FROM campaign_suspects WHERE campaign = ?1 AND first_row >= ?2 AND "
+          "first_row + rows <= ?3",
+          id, tile.first, tile.first + tile.count);
+  execute(db,
+          "UPDATE campaign_suspects SET rows = first_row + rows - ?3, first_row = ?3, "
+          "is_begun = 0 WHERE campaign = ?1 AND first_row = ?2",
+          id, tile.first, tile.first + tile.count);
 }
 
 }  // namespace tribodyn::server

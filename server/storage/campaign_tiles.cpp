@@ -28,38 +28,21 @@ void decompress_blob(const SQLite::Column& data, std::int64_t expected, std::spa
 bool overlaps(Connection& db, std::int64_t id, const RowRange& rows) {
   Prepared query(db,
                  "SELECT 1 FROM campaign_tiles WHERE campaign = ?1 AND first_row < ?2 AND "
-                 "first_row + rows > ?3");
-  query.bind(1, id);
-  query.bind(2, rows.first + rows.count);
-  query.bind(3, rows.first);
+                 "first_row + rows > ?3",
+                 id, rows.first + rows.count, rows.first);
   return query.executeStep();
 }
 
 void insert_blobs(Connection& db, std::int64_t id, const NewTile& tile,
                   const std::vector<std::string>& blobs) {
-  Prepared insert(db, "INSERT INTO campaign_tiles VALUES (?, ?, ?)");
-  insert.bind(1, id);
-  insert.bind(2, tile.rows.first);
-  insert.bind(3, tile.rows.count);
-  insert.exec();
+  execute(db, "INSERT INTO campaign_tiles VALUES (?, ?, ?)", id, tile.rows.first, tile.rows.count);
   Prepared blob(db, "INSERT INTO campaign_blobs VALUES (?, ?, ?, ?, ?)");
   for (std::size_t i = 0; i < blobs.size(); ++i) {
-    blob.bind(1, id);
-    blob.bind(2, static_cast<int>(i));
-    blob.bind(3, tile.rows.first);
-    blob.bind(4, checksum(blobs[i]));
-    blob.bindNoCopy(5, blobs[i].data(), static_cast<int>(blobs[i].size()));
-    blob.exec();
-    blob.reset();
+    blob.run(id, static_cast<int>(i), tile.rows.first, checksum(blobs[i]), Blob{blobs[i]});
   }
   for (const CampaignRefusal& each : tile.refusals) {
-    Prepared refusal(db,
-                     "INSERT INTO campaign_refusals VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING");
-    refusal.bind(1, id);
-    refusal.bind(2, each.number);
-    refusal.bind(3, each.reason);
-    refusal.bind(4, each.message);
-    refusal.exec();
+    execute(db, "INSERT INTO campaign_refusals VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING", id,
+            each.number, each.reason, each.message);
   }
 }
 
@@ -81,19 +64,16 @@ std::optional<StoredCampaign> insert_tile(Connection& db, std::int64_t id, const
   if (overlaps(db, id, tile.rows)) return std::nullopt;
   std::size_t bytes = 0;
   for (const std::string& each : blobs) bytes += each.size();
-  Prepared update(db,
-                  "UPDATE campaigns SET points_done = points_done + ?2, "
-                  "points_refused = points_refused + ?3, "
-                  "processor_seconds = processor_seconds + ?4, stored_bytes = stored_bytes + ?5, "
-                  "lost_attempts = CASE WHEN ?6 THEN 0 ELSE lost_attempts END "
-                  "WHERE id = ?1 AND state <= 2");
-  update.bind(1, id);
-  update.bind(2, tile.rows.count);
-  update.bind(3, tile.refused_points);
-  update.bind(4, tile.processor_seconds);
-  update.bind(5, static_cast<std::int64_t>(bytes));
-  update.bind(6, tile.proves_health ? 1 : 0);
-  if (update.exec() == 0) return std::nullopt;
+  const int changed =
+      execute(db,
+              "UPDATE campaigns SET points_done = points_done + ?2, "
+              "points_refused = points_refused + ?3, "
+              "processor_seconds = processor_seconds + ?4, stored_bytes = stored_bytes + ?5, "
+              "lost_attempts = CASE WHEN ?6 THEN 0 ELSE lost_attempts END "
+              "WHERE id = ?1 AND state <= 2",
+              id, tile.rows.count, tile.refused_points, tile.processor_seconds,
+              static_cast<std::int64_t>(bytes), tile.proves_health);
+  if (changed == 0) return std::nullopt;
   insert_blobs(db, id, tile, blobs);
   clear_suspects(db, id, tile.rows);
   std::optional<StoredCampaign> stored = query_campaign(db, id);
@@ -115,8 +95,8 @@ std::optional<CampaignProgress> query_campaign_progress(Connection& db, std::int
                                                         std::int64_t first_missing_row) {
   Prepared query(db,
                  "SELECT state, stop_reason, stop_message, candidates * conditions, points_done, "
-                 "points_refused, processor_seconds FROM campaigns WHERE id = ?");
-  query.bind(1, id);
+                 "points_refused, processor_seconds FROM campaigns WHERE id = ?",
+                 id);
   if (!query.executeStep()) return std::nullopt;
   CampaignProgress out{.state = static_cast<CampaignState>(query.getColumn(0).getInt()),
                        .stop_reason = query.getColumn(1).getString(),
@@ -128,9 +108,8 @@ std::optional<CampaignProgress> query_campaign_progress(Connection& db, std::int
                        .processor_seconds = query.getColumn(6).getDouble()};
   Prepared tiles(db,
                  "SELECT first_row, rows FROM campaign_tiles WHERE campaign = ? AND "
-                 "first_row >= ? ORDER BY first_row");
-  tiles.bind(1, id);
-  tiles.bind(2, first_missing_row);
+                 "first_row >= ? ORDER BY first_row",
+                 id, first_missing_row);
   while (tiles.executeStep() && tiles.getColumn(0).getInt64() == out.first_missing_row) {
     out.first_missing_row += tiles.getColumn(1).getInt64();
   }
@@ -139,8 +118,7 @@ std::optional<CampaignProgress> query_campaign_progress(Connection& db, std::int
 
 std::vector<RowRange> query_tiles(Connection& db, std::int64_t id) {
   Prepared query(
-      db, "SELECT first_row, rows FROM campaign_tiles WHERE campaign = ? ORDER BY first_row");
-  query.bind(1, id);
+      db, "SELECT first_row, rows FROM campaign_tiles WHERE campaign = ? ORDER BY first_row", id);
   std::vector<RowRange> out;
   while (query.executeStep()) {
     out.push_back({query.getColumn(0).getInt64(), query.getColumn(1).getInt64()});
@@ -151,8 +129,8 @@ std::vector<RowRange> query_tiles(Connection& db, std::int64_t id) {
 std::vector<CampaignRefusal> query_refusals(Connection& db, std::int64_t id) {
   Prepared query(db,
                  "SELECT number, reason, message FROM campaign_refusals WHERE campaign = ? "
-                 "ORDER BY number");
-  query.bind(1, id);
+                 "ORDER BY number",
+                 id);
   std::vector<CampaignRefusal> out;
   while (query.executeStep()) {
     out.push_back({query.getColumn(0).getInt(), query.getColumn(1).getString(),
@@ -168,11 +146,8 @@ void query_campaign_column(Connection& db, std::int64_t id, int column, std::int
                  "SELECT b.first_row, t.rows, b.checksum, b.data FROM campaign_blobs b "
                  "JOIN campaign_tiles t ON t.campaign = b.campaign AND t.first_row = b.first_row "
                  "WHERE b.campaign = ?1 AND b.number = ?2 AND b.first_row > ?3 AND "
-                 "b.first_row < ?4 ORDER BY b.first_row");
-  query.bind(1, id);
-  query.bind(2, column);
-  query.bind(3, start - kMaximumTileRows);
-  query.bind(4, end);
+                 "b.first_row < ?4 ORDER BY b.first_row",
+                 id, column, start - kMaximumTileRows, end);
   std::vector<double> part;
   while (query.executeStep()) {
     const std::int64_t first = query.getColumn(0).getInt64();
@@ -196,9 +171,8 @@ bool is_whole_tile(Connection& db, std::int64_t id, const RowRange& tile, int co
   if (tile.count < 1 || tile.count > kMaximumTileRows) return false;
   Prepared query(db,
                  "SELECT number, checksum, data FROM campaign_blobs WHERE campaign = ? AND "
-                 "first_row = ? ORDER BY number");
-  query.bind(1, id);
-  query.bind(2, tile.first);
+                 "first_row = ? ORDER BY number",
+                 id, tile.first);
   std::vector<double> values(static_cast<std::size_t>(tile.count));
   int found = 0;
   for (; query.executeStep(); ++found) {

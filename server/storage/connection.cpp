@@ -35,4 +35,10 @@ Prepared::~Prepared() {
   idle_.push_back(std::move(statement_));
 }
 
+std::optional<std::int64_t> Prepared::returned() {
+  const auto out = first([](SQLite::Statement& row) { return row.getColumn(0).getInt64(); });
+  if (out) executeStep();  // to its end: only then is the change done
+  return out;
+}
+
 }  // namespace tribodyn::server

@@ -207,8 +207,7 @@ void check_bodies(Connection& db, Problems& problems) {
 }
 
 std::map<std::string, PropertyValue> stored_properties(Connection& db, std::int64_t id) {
-  SQLite::Statement query(db, "SELECT key, value FROM properties WHERE resource = ?");
-  query.bind(1, id);
+  Prepared query(db, "SELECT key, value FROM properties WHERE resource = ?", id);
   std::map<std::string, PropertyValue> out;
   while (query.executeStep()) {
     const SQLite::Column value = query.getColumn(1);
@@ -238,13 +237,11 @@ void check_properties(Connection& db, Problems& problems) {
 }
 
 std::optional<std::string> revision_body(Connection& db, const std::string& name, int revision) {
-  SQLite::Statement query(db,
-                          "SELECT v.body FROM revisions v JOIN resources r ON r.id = v.resource "
-                          "WHERE r.name = ? AND v.revision = ?");
-  query.bind(1, name);
-  query.bind(2, revision);
-  if (!query.executeStep()) return std::nullopt;
-  return query.getColumn(0).getString();
+  Prepared query(db,
+                 "SELECT v.body FROM revisions v JOIN resources r ON r.id = v.resource "
+                 "WHERE r.name = ? AND v.revision = ?",
+                 name, revision);
+  return query.first([](SQLite::Statement& row) { return row.getColumn(0).getString(); });
 }
 
 void check_simulations(Connection& db, const HashInputs& hash_inputs, Problems& problems) {

@@ -33,25 +33,24 @@ StoredEvent stored_event(const SQLite::Statement& query) {
 
 void forget_oldest_deletions(Connection& db, const std::string& project) {
   const std::string count = std::to_string(kForgottenAtOnce);
-  Prepared note(db, "UPDATE projects SET deletions = deletions - " + count +
-                        ", forgotten_event = (SELECT number FROM events WHERE project = ?1 AND "
-                        "state = 0 ORDER BY number LIMIT 1 OFFSET " +
-                        count + " - 1) WHERE name = ?1");
-  note.bind(1, project);
-  note.exec();
-  Prepared forget(db,
-                  "DELETE FROM events WHERE project = ?1 AND state = 0 AND number <= "
-                  "(SELECT forgotten_event FROM projects WHERE name = ?1)");
-  forget.bind(1, project);
-  forget.exec();
+  execute(db,
+          "UPDATE projects SET deletions = deletions - " + count +
+              ", forgotten_event = (SELECT number FROM events WHERE project = ?1 AND "
+              "state = 0 ORDER BY number LIMIT 1 OFFSET " +
+              count + " - 1) WHERE name = ?1",
+          project);
+  execute(db,
+          "DELETE FROM events WHERE project = ?1 AND state = 0 AND number <= "
+          "(SELECT forgotten_event FROM projects WHERE name = ?1)",
+          project);
 }
 
 /// Sets project and number of an event of a simulation: the next number of its project.
 void take_event_number(Connection& db, StoredEvent& event) {
   Prepared next(db,
                 "UPDATE projects SET last_event = last_event + 1 WHERE name = "
-                "(SELECT project FROM simulations WHERE id = ?) RETURNING name, last_event");
-  next.bind(1, event.simulation);
+                "(SELECT project FROM simulations WHERE id = ?) RETURNING name, last_event",
+                event.simulation);
   if (!next.executeStep()) return;  // without its simulation a trigger refuses the event
   event.project = next.getColumn(0).getString();
   event.number = next.getColumn(1).getInt64();
@@ -76,25 +75,19 @@ void read_events(SQLite::Statement& query, EventPage& page) {
 
 void insert_event(Connection& db, StoredEvent& event) {
   take_event_number(db, event);
-  Prepared insert(db,
-                  "INSERT INTO events (simulation, sequence, time, state, attempt, reason, "
-                  "project, number, simulation_number) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
-  insert.bind(1, event.simulation);
-  insert.bind(2, event.sequence);
-  insert.bind(3, event.time);
-  insert.bind(4, static_cast<int>(event.state));
-  insert.bind(5, event.attempt);
-  insert.bind(6, event.reason);
-  insert.bind(7, event.project);
-  insert.bind(8, event.number);
-  if (event.state == StoredState::kDeleted) insert.bind(9, event.simulation_number);
-  insert.exec();
+  std::optional<std::int64_t> deleted;
+  if (event.state == StoredState::kDeleted) deleted = event.simulation_number;
+  execute(db,
+          "INSERT INTO events (simulation, sequence, time, state, attempt, reason, "
+          "project, number, simulation_number) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
+          event.simulation, event.sequence, event.time, event.state, event.attempt, event.reason,
+          event.project, event.number, deleted);
 }
 
 void insert_deletion(Connection& db, std::int64_t simulation) {
   Prepared last(
-      db, std::string(kEventColumns) + "WHERE e.simulation = ? ORDER BY e.sequence DESC LIMIT 1");
-  last.bind(1, simulation);
+      db, std::string(kEventColumns) + "WHERE e.simulation = ? ORDER BY e.sequence DESC LIMIT 1",
+      simulation);
   if (!last.executeStep()) return;
   StoredEvent deletion = stored_event(last);
   last.reset();
@@ -103,15 +96,12 @@ void insert_deletion(Connection& db, std::int64_t simulation) {
   deletion.state = StoredState::kDeleted;
   deletion.reason.clear();
   insert_event(db, deletion);
-  Prepared remove(db, "DELETE FROM events WHERE simulation = ? AND state <> 0");
-  remove.bind(1, simulation);
-  remove.exec();
-  Prepared count(
-      db, "UPDATE projects SET deletions = deletions + 1 WHERE name = ? RETURNING deletions");
-  count.bind(1, deletion.project);
-  count.executeStep();
-  const int deletions = count.getColumn(0).getInt();
-  count.executeStep();
+  execute(db, "DELETE FROM events WHERE simulation = ? AND state <> 0", simulation);
+  const auto deletions =
+      Prepared(db,
+               "UPDATE projects SET deletions = deletions + 1 WHERE name = ? RETURNING deletions",
+               deletion.project)
+          .returned();
   if (deletions >= kKeptDeletions + kForgottenAtOnce) {
     forget_oldest_deletions(db, deletion.project);
   }
@@ -119,34 +109,31 @@ void insert_deletion(Connection& db, std::int64_t simulation) {
 
 std::optional<StoredEvent> query_next_event(Connection& db, std::int64_t simulation,
                                             std::int64_t after_sequence) {
-  Prepared query(db, std::string(kEventColumns) +
-                         "WHERE e.simulation = ? AND e.sequence > ? ORDER BY e.sequence LIMIT 1");
-  query.bind(1, simulation);
-  query.bind(2, after_sequence);
-  if (!query.executeStep()) return std::nullopt;
-  return stored_event(query);
+  Prepared query(db,
+                 std::string(kEventColumns) +
+                     "WHERE e.simulation = ? AND e.sequence > ? ORDER BY e.sequence LIMIT 1",
+                 simulation, after_sequence);
+  return query.first(stored_event);
 }
 
 std::optional<StoredEvent> query_deletion(Connection& db, const std::string& project,
                                           std::int64_t simulation_number) {
-  Prepared query(db, std::string(kEventColumns) +
-                         "WHERE e.state = 0 AND e.project = ? AND e.simulation_number = ?");
-  query.bind(1, project);
-  query.bind(2, simulation_number);
-  if (!query.executeStep()) return std::nullopt;
-  return stored_event(query);
+  Prepared query(db,
+                 std::string(kEventColumns) +
+                     "WHERE e.state = 0 AND e.project = ? AND e.simulation_number = ?",
+                 project, simulation_number);
+  return query.first(stored_event);
 }
 
 EventPage query_events(Connection& db, const EventQuery& query) {
   EventPage page;
   const std::int64_t latest = query_event_range(db, query.project).latest;
   if (!query.simulations.empty()) {
-    Prepared events(db, std::string(kEventColumns) +
-                            "WHERE e.simulation IN (SELECT value FROM json_each(?)) "
-                            "AND e.number > ? ORDER BY e.number LIMIT ?");
-    events.bind(1, json_array(query.simulations));
-    events.bind(2, query.after);
-    events.bind(3, kEventPage);
+    Prepared events(db,
+                    std::string(kEventColumns) +
+                        "WHERE e.simulation IN (SELECT value FROM json_each(?)) "
+                        "AND e.number > ? ORDER BY e.number LIMIT ?",
+                    json_array(query.simulations), query.after, kEventPage);
     read_events(events, page);
     if (!page.more) page.through = std::max(query.after, latest);
     if (!page.events.empty()) page.through = std::max(page.through, page.events.back().number);
@@ -159,12 +146,10 @@ EventPage query_events(Connection& db, const EventQuery& query) {
                                    "(e.state = 0 OR EXISTS "
                                    "(SELECT 1 FROM simulations WHERE id = e.simulation AND " +
                                    condition.sql + ")) ORDER BY e.number LIMIT ?");
-  int index = 0;
-  events.bind(++index, query.project);
-  events.bind(++index, query.after);
-  events.bind(++index, page.through);
-  for (const PropertyValue& value : condition.values) bind_value(events, ++index, value);
-  events.bind(++index, kEventPage);
+  std::vector<PropertyValue> values{query.project, query.after, page.through};
+  values.insert(values.end(), condition.values.begin(), condition.values.end());
+  values.emplace_back(std::int64_t{kEventPage});
+  bind_values(events, values);
   const std::int64_t window_end = page.through;
   read_events(events, page);
   page.more = page.more || window_end < latest;
@@ -179,9 +164,8 @@ std::vector<std::optional<SimulationState>> query_states(Connection& db, const s
                  "SELECT asked.key, s.id, s.state, s.attempt, s.sequence, e.number "
                  "FROM json_each(?) asked "
                  "JOIN simulations s ON s.project = ? AND s.number = asked.value "
-                 "JOIN events e ON e.simulation = s.id AND e.sequence = s.sequence");
-  query.bind(1, json_array(numbers));
-  query.bind(2, project);
+                 "JOIN events e ON e.simulation = s.id AND e.sequence = s.sequence",
+                 json_array(numbers), project);
   while (query.executeStep()) {
     out[static_cast<std::size_t>(query.getColumn(0).getInt64())] =
         SimulationState{.id = query.getColumn(1).getInt64(),
@@ -194,8 +178,7 @@ std::vector<std::optional<SimulationState>> query_states(Connection& db, const s
 }
 
 EventRange query_event_range(Connection& db, const std::string& project) {
-  Prepared query(db, "SELECT last_event, forgotten_event FROM projects WHERE name = ?");
-  query.bind(1, project);
+  Prepared query(db, "SELECT last_event, forgotten_event FROM projects WHERE name = ?", project);
   if (!query.executeStep()) return {};
   return {query.getColumn(0).getInt64(), query.getColumn(1).getInt64()};
 }

@@ -41,16 +41,14 @@ bool is_equal(std::span<const double> one, std::span<const double> other) {
 }
 
 std::int64_t rows_of(Connection& db, std::int64_t column) {
-  Prepared query(db, "SELECT rows FROM history_columns WHERE id = ?");
-  query.bind(1, column);
+  Prepared query(db, "SELECT rows FROM history_columns WHERE id = ?", column);
   return query.executeStep() ? query.getColumn(0).getInt64() : -1;
 }
 
 std::int64_t blocks_of(Connection& db, std::int64_t column) {
-  Prepared query(db, "SELECT count(*) FROM history_blocks WHERE history_column = ? AND level = 0");
-  query.bind(1, column);
-  query.executeStep();
-  return query.getColumn(0).getInt64();
+  Prepared query(db, "SELECT count(*) FROM history_blocks WHERE history_column = ? AND level = 0",
+                 column);
+  return query.value().getInt64();
 }
 
 }  // namespace
@@ -66,33 +64,22 @@ CompressedColumn compress(const StoredColumn& column) {
 
 void insert_history_column(Connection& db, std::int64_t result, std::int64_t position,
                            const CompressedColumn& column) {
-  Prepared insert(db,
-                  "INSERT INTO history_columns (result, position, name, rows) VALUES (?, ?, ?, ?)");
-  insert.bind(1, result);
-  insert.bind(2, position);
-  insert.bind(3, column.name);
-  insert.bind(4, column.rows);
-  insert.exec();
+  execute(db, "INSERT INTO history_columns (result, position, name, rows) VALUES (?, ?, ?, ?)",
+          result, position, column.name, column.rows);
   const std::int64_t row = db.getLastInsertRowid();
   Prepared block(db, "INSERT INTO history_blocks VALUES (?, ?, ?, ?, ?)");
   for (std::size_t level = 0; level < column.levels.size(); ++level) {
     for (std::size_t number = 0; number < column.levels[level].size(); ++number) {
       const std::string& data = column.levels[level][number];
-      block.bind(1, row);
-      block.bind(2, static_cast<std::int64_t>(level));
-      block.bind(3, static_cast<std::int64_t>(number));
-      block.bindNoCopy(4, data.data(), static_cast<int>(data.size()));
-      block.bind(5, checksum(data));
-      block.exec();
-      block.reset();
+      block.run(row, static_cast<std::int64_t>(level), static_cast<std::int64_t>(number),
+                Blob{data}, checksum(data));
     }
   }
 }
 
 HistoryShape query_history_shape(Connection& db, std::int64_t result) {
-  Prepared query(db,
-                 "SELECT id, name, rows FROM history_columns WHERE result = ? ORDER BY position");
-  query.bind(1, result);
+  Prepared query(
+      db, "SELECT id, name, rows FROM history_columns WHERE result = ? ORDER BY position", result);
   HistoryShape shape;
   while (query.executeStep()) {
     shape.columns.push_back(query.getColumn(0).getInt64());
@@ -110,11 +97,8 @@ bool query_history(Connection& db, std::int64_t column, int level, std::int64_t 
   if (start + count > size) return false;
   Prepared query(db,
                  "SELECT data, checksum FROM history_blocks WHERE history_column = ? AND level = ? "
-                 "AND number BETWEEN ? AND ? ORDER BY number");
-  query.bind(1, column);
-  query.bind(2, level);
-  query.bind(3, start / kHistoryBlock);
-  query.bind(4, (start + count - 1) / kHistoryBlock);
+                 "AND number BETWEEN ? AND ? ORDER BY number",
+                 column, level, start / kHistoryBlock, (start + count - 1) / kHistoryBlock);
   std::vector<double> part;
   std::int64_t here = start / kHistoryBlock * kHistoryBlock;
   for (; here < start + count && query.executeStep(); here += kHistoryBlock) {

@@ -41,17 +41,11 @@ std::string uses(const StoredResource& resource, bool is_of_campaigns = false) {
          of_resource + "))";
 }
 
-int remove_rows(Connection& db, const char* sql, std::int64_t key) {
-  Prepared statement(db, sql);
-  statement.bind(1, key);
-  return statement.exec();
-}
-
 /// Returns the rows of a table, simulations or campaigns, that used the resource.
 std::vector<std::int64_t> users_of(Connection& db, const std::string& table,
                                    const StoredResource& resource) {
-  Prepared query(db, "SELECT id FROM " + table + " WHERE " + uses(resource, table == "campaigns"));
-  query.bind(1, resource.id);
+  Prepared query(db, "SELECT id FROM " + table + " WHERE " + uses(resource, table == "campaigns"),
+                 resource.id);
   std::vector<std::int64_t> out;
   while (query.executeStep()) out.push_back(query.getColumn(0).getInt64());
   return out;
@@ -60,9 +54,7 @@ std::vector<std::int64_t> users_of(Connection& db, const std::string& table,
 /// Copies the write-ahead log into the database and truncates the log. Returns false if a reader
 /// still needs it.
 bool empty_log(Connection& db) {
-  SQLite::Statement checkpoint(db, "PRAGMA wal_checkpoint(TRUNCATE)");
-  checkpoint.executeStep();
-  return checkpoint.getColumn(0).getInt() == 0;
+  return db.execAndGet("PRAGMA wal_checkpoint(TRUNCATE)").getInt() == 0;
 }
 
 }  // namespace
@@ -71,33 +63,28 @@ std::int64_t remove_simulation(Connection& db, std::int64_t id) {
   std::int64_t result = 0, ledger = 0;
   {
     Prepared query(
-        db, "SELECT coalesce(result, 0), coalesce(ledger, 0) FROM simulations WHERE id = ?1");
-    query.bind(1, id);
+        db, "SELECT coalesce(result, 0), coalesce(ledger, 0) FROM simulations WHERE id = ?1", id);
     if (!query.executeStep()) return 0;
     result = query.getColumn(0).getInt64();
     ledger = query.getColumn(1).getInt64();
   }
   insert_deletion(db, id);
-  remove_rows(db, "DELETE FROM simulations WHERE id = ?1", id);
-  remove_rows(db,
-              "DELETE FROM ledgers WHERE id = ?1 AND "
-              "NOT EXISTS (SELECT 1 FROM simulations WHERE ledger = ?1)",
-              ledger);
+  execute(db, "DELETE FROM simulations WHERE id = ?1", id);
+  execute(db,
+          "DELETE FROM ledgers WHERE id = ?1 AND "
+          "NOT EXISTS (SELECT 1 FROM simulations WHERE ledger = ?1)",
+          ledger);
   Prepared remove(db,
                   "DELETE FROM results WHERE id = ?1 AND "
                   "NOT EXISTS (SELECT 1 FROM simulations WHERE result = ?1) "
-                  "RETURNING stored_bytes");
-  remove.bind(1, result);
-  if (!remove.executeStep()) return 0;
-  const std::int64_t bytes = remove.getColumn(0).getInt64();
-  remove.executeStep();  // the row is removed only when the statement is finished
-  return bytes;
+                  "RETURNING stored_bytes",
+                  result);
+  return remove.returned().value_or(0);
 }
 
 Dependents dependents_of(Connection& db, const StoredResource& resource) {
   Dependents out;
-  Prepared query(db, "SELECT id, state FROM simulations WHERE " + uses(resource));
-  query.bind(1, resource.id);
+  Prepared query(db, "SELECT id, state FROM simulations WHERE " + uses(resource), resource.id);
   while (query.executeStep()) {
     if (query.getColumn(1).getInt() < 3) {
       out.unfinished.push_back(query.getColumn(0).getInt64());
@@ -105,16 +92,15 @@ Dependents dependents_of(Connection& db, const StoredResource& resource) {
       ++out.ended;
     }
   }
-  Prepared results(db, "SELECT count(DISTINCT result) FROM simulations AS own WHERE " +
-                           uses(resource) +
-                           " AND NOT EXISTS (SELECT 1 FROM simulations WHERE result = own.result "
-                           "AND NOT " +
-                           uses(resource) + ")");
-  results.bind(1, resource.id);
-  results.executeStep();
-  out.results = results.getColumn(0).getInt();
-  Prepared campaigns(db, "SELECT id, state FROM campaigns WHERE " + uses(resource, true));
-  campaigns.bind(1, resource.id);
+  Prepared results(db,
+                   "SELECT count(DISTINCT result) FROM simulations AS own WHERE " + uses(resource) +
+                       " AND NOT EXISTS (SELECT 1 FROM simulations WHERE result = own.result "
+                       "AND NOT " +
+                       uses(resource) + ")",
+                   resource.id);
+  out.results = results.value().getInt();
+  Prepared campaigns(db, "SELECT id, state FROM campaigns WHERE " + uses(resource, true),
+                     resource.id);
   while (campaigns.executeStep()) {
     if (has_ended(static_cast<CampaignState>(campaigns.getColumn(1).getInt()))) {
       ++out.ended_campaigns;
@@ -128,14 +114,14 @@ Dependents dependents_of(Connection& db, const StoredResource& resource) {
 int remove_resource(Connection& db, const StoredResource& resource) {
   for (const std::int64_t id : users_of(db, "simulations", resource)) remove_simulation(db, id);
   for (const std::int64_t id : users_of(db, "campaigns", resource)) remove_campaign(db, id);
-  remove_rows(db, "DELETE FROM properties WHERE resource = ?1", resource.id);
+  execute(db, "DELETE FROM properties WHERE resource = ?1", resource.id);
   // The trigger that protects revisions is dropped and created again within the transaction.
   const std::string trigger =
       db.execAndGet("SELECT sql FROM sqlite_master WHERE name = 'revisions_stay'").getString();
   db.exec("DROP TRIGGER revisions_stay");
-  const int revisions = remove_rows(db, "DELETE FROM revisions WHERE resource = ?1", resource.id);
+  const int revisions = execute(db, "DELETE FROM revisions WHERE resource = ?1", resource.id);
   db.exec(trigger);
-  remove_rows(db, "DELETE FROM resources WHERE id = ?1", resource.id);
+  execute(db, "DELETE FROM resources WHERE id = ?1", resource.id);
   return revisions;
 }
 

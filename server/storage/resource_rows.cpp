@@ -17,71 +17,50 @@ void insert_properties(Connection& db, const StoredResource& resource) {
   Prepared insert(db, "INSERT INTO properties VALUES (?, ?, ?, ?, ?)");
   for (const Property& each : properties_of(collection, resource.body, resource.create_time,
                                             resource.revision_create_time)) {
-    insert.bind(1, resource.id);
-    insert.bind(2, each.key);
-    bind_value(insert, 3, each.value);
-    insert.bind(4, full_collection_of(resource.name));
-    insert.bind(5, resource.name);
-    insert.exec();
-    insert.reset();
+    insert.run(resource.id, each.key, each.value, full_collection_of(resource.name), resource.name);
   }
 }
 
 void replace_properties(Connection& db, const StoredResource& resource) {
-  Prepared clear(db, "DELETE FROM properties WHERE resource = ?");
-  clear.bind(1, resource.id);
-  clear.exec();
+  execute(db, "DELETE FROM properties WHERE resource = ?", resource.id);
   insert_properties(db, resource);
 }
 
 /// Returns true if every resource of a collection has every property that all of them have. Unset
 /// numbers have none.
 bool has_all_properties(Connection& db, const std::string& collection) {
-  Prepared resources(db, "SELECT count(*) FROM resources WHERE collection = ?");
-  resources.bind(1, collection);
-  resources.executeStep();
-  const int count = resources.getColumn(0).getInt();
+  Prepared resources(db, "SELECT count(*) FROM resources WHERE collection = ?", collection);
+  const int count = resources.value().getInt();
   const auto& fields = property_fields(relative_name(collection));
   return std::all_of(fields.begin(), fields.end(), [&](const PropertyField& field) {
     if (field.kind == PropertyKind::kNumber) return true;
-    Prepared properties(db, "SELECT count(*) FROM properties WHERE collection = ? AND key = ?");
-    properties.bind(1, collection);
-    properties.bind(2, field.key);
-    properties.executeStep();
-    return properties.getColumn(0).getInt() == count;
+    Prepared properties(db, "SELECT count(*) FROM properties WHERE collection = ? AND key = ?",
+                        collection, field.key);
+    return properties.value().getInt() == count;
   });
 }
 
 /// Inserts a revision and makes it the current one.
 void add_revision(Connection& db, const StoredResource& added) {
-  Prepared insert(db,
-                  "INSERT INTO revisions (resource, revision, create_time, content_hash, body) "
-                  "VALUES (?, ?, ?, ?, ?)");
-  insert.bind(1, added.id);
-  insert.bind(2, added.revision);
-  insert.bind(3, added.revision_create_time);
-  insert.bind(4, added.content_hash);
-  bind_blob(insert, 5, added.body);
-  insert.exec();
-  Prepared present(db, "UPDATE resources SET present = ? WHERE id = ?");
-  present.bind(1, db.getLastInsertRowid());
-  present.bind(2, added.id);
-  present.exec();
+  execute(db,
+          "INSERT INTO revisions (resource, revision, create_time, content_hash, body) "
+          "VALUES (?, ?, ?, ?, ?)",
+          added.id, added.revision, added.revision_create_time, added.content_hash,
+          Blob{added.body});
+  execute(db, "UPDATE resources SET present = ? WHERE id = ?", db.getLastInsertRowid(), added.id);
 }
 
 }  // namespace
 
-void bind_blob(SQLite::Statement& statement, int index, const std::string& bytes) {
-  statement.bind(index, bytes.data(), static_cast<int>(bytes.size()));
-}
-
-void bind_value(SQLite::Statement& statement, int index, const PropertyValue& value) {
-  std::visit([&](const auto& held) { statement.bind(index, held); }, value);
+RevisionRow revision_row(const std::string& project, const std::string& revision) {
+  const std::size_t at = std::min(revision.find('@'), revision.size());
+  RevisionRow out{full_name(project, revision.substr(0, at)), {}};
+  if (at < revision.size()) out.number = std::stoi(revision.substr(at + 1));
+  return out;
 }
 
 bool is_taken(Connection& db, const std::string& name) {
-  Prepared taken(db, "SELECT 1 FROM resources WHERE name = ?");
-  taken.bind(1, name);
+  Prepared taken(db, "SELECT 1 FROM resources WHERE name = ?", name);
   return taken.executeStep();
 }
 
@@ -90,22 +69,15 @@ bool is_unchanged(Connection& db, const StoredResource& present) {
   Prepared unchanged(db,
                      "SELECT 1 FROM resources r JOIN revisions v ON v.id = r.present "
                      "WHERE r.id = ? AND v.revision = ? AND "
-                     "(r.delete_time IS NULL) = ? AND r.name = ? AND v.content_hash = ?");
-  unchanged.bind(1, present.id);
-  unchanged.bind(2, present.revision);
-  unchanged.bind(3, present.delete_time ? 0 : 1);
-  unchanged.bind(4, present.name);
-  unchanged.bind(5, present.content_hash);
+                     "(r.delete_time IS NULL) = ? AND r.name = ? AND v.content_hash = ?",
+                     present.id, present.revision, !present.delete_time, present.name,
+                     present.content_hash);
   return unchanged.executeStep();
 }
 
 StoredResource insert_resource(Connection& db, const NewResource& resource, Microseconds now) {
-  Prepared insert(
-      db, "INSERT INTO resources (name, collection, present, create_time) VALUES (?, ?, 0, ?)");
-  insert.bind(1, resource.name);
-  insert.bind(2, full_collection_of(resource.name));
-  insert.bind(3, now);
-  insert.exec();
+  execute(db, "INSERT INTO resources (name, collection, present, create_time) VALUES (?, ?, 0, ?)",
+          resource.name, full_collection_of(resource.name), now);
   StoredResource added;
   added.id = db.getLastInsertRowid();
   added.name = resource.name;

@@ -13,8 +13,14 @@ namespace tribodyn::server {
 // Functions for rows of resources, revisions and properties on an open connection, inside the
 // caller's transaction. All throw SQLite::Exception.
 
-void bind_blob(SQLite::Statement& statement, int index, const std::string& bytes);
-void bind_value(SQLite::Statement& statement, int index, const PropertyValue& value);
+/// A revision in the columns of revision_names.
+struct RevisionRow {
+  std::string name;  ///< full name of the resource
+  std::optional<int> number;
+};
+/// Returns the row of a relative name, e.g. "lubricants/paper-fluid-1@2"; one without a number if
+/// the name is empty.
+RevisionRow revision_row(const std::string& project, const std::string& revision);
 
 /// Returns true if a resource, deleted or not, has this name.
 bool is_taken(Connection& db, const std::string& name);

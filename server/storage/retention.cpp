@@ -20,9 +20,8 @@ Removed remove_oldest(Connection& db, Microseconds ended_by, int limit) {
   Prepared query(db,
                  "SELECT id, end_time FROM simulations "
                  "WHERE state >= 3 AND pinned = 0 AND end_time <= ? "
-                 "ORDER BY end_time LIMIT ?");
-  query.bind(1, ended_by);
-  query.bind(2, limit);
+                 "ORDER BY end_time LIMIT ?",
+                 ended_by, limit);
   std::vector<std::int64_t> oldest;
   Microseconds newest = ended_by;  // of those that go, if there are as many as may go
   while (query.executeStep()) {
@@ -33,8 +32,8 @@ Removed remove_oldest(Connection& db, Microseconds ended_by, int limit) {
   Removed removed;
   Prepared campaigns(db,
                      "SELECT id FROM campaigns WHERE state >= 3 AND end_time <= ? "
-                     "ORDER BY end_time LIMIT 1");
-  campaigns.bind(1, newest);
+                     "ORDER BY end_time LIMIT 1",
+                     newest);
   if (campaigns.executeStep()) {
     const std::int64_t id = campaigns.getColumn(0).getInt64();
     campaigns.reset();

@@ -42,47 +42,38 @@ void move_resources(Connection& db, Microseconds now) {
 /// A name that the request leaves out means the default of schema 1.
 void pin_simulations(Connection& db) {
   SQLite::Statement query(db, "SELECT id, request FROM simulations");
-  SQLite::Statement pin(db,
-                        "UPDATE simulations SET "
-                        "lubricant = (SELECT present FROM resources WHERE name = ?2), "
-                        "gear_set = (SELECT present FROM resources WHERE name = ?3), "
-                        "surface = (SELECT present FROM resources WHERE name = ?4), "
-                        "vehicle = (SELECT present FROM resources WHERE name = ?5) WHERE id = ?1");
-  const auto bind = [&pin](int index, const std::string& stated, const char* otherwise) {
-    pin.bind(index, stated.empty() ? otherwise : stated);
+  Prepared pin(db,
+               "UPDATE simulations SET "
+               "lubricant = (SELECT present FROM resources WHERE name = ?2), "
+               "gear_set = (SELECT present FROM resources WHERE name = ?3), "
+               "surface = (SELECT present FROM resources WHERE name = ?4), "
+               "vehicle = (SELECT present FROM resources WHERE name = ?5) WHERE id = ?1");
+  const auto stated_or = [](const std::string& stated, const char* otherwise) {
+    return stated.empty() ? otherwise : stated;
   };
   while (query.executeStep()) {
     v1::Simulation request;
     if (!request.ParseFromString(query.getColumn(1).getString())) continue;
-    pin.bind(1, query.getColumn(0).getInt64());
-    bind(2, request.lubricant(), "");
-    bind(3, request.gear_set(), "gearSets/A");
-    bind(4, request.surface(), "surfaces/run-in");
-    bind(5, request.vehicle(), "vehicles/passenger-car");
-    pin.exec();
-    pin.reset();
+    pin.run(query.getColumn(0).getInt64(), request.lubricant(),
+            stated_or(request.gear_set(), "gearSets/A"),
+            stated_or(request.surface(), "surfaces/run-in"),
+            stated_or(request.vehicle(), "vehicles/passenger-car"));
   }
 }
 
 /// Assumptions leave the results, and these say which model they are of.
 void split_ledgers(Connection& db) {
   SQLite::Statement query(db, "SELECT id, body FROM results");
-  SQLite::Statement keep(db, "UPDATE results SET body = ?2, model_version = ?3 WHERE id = ?1");
-  SQLite::Statement refer(db, "UPDATE simulations SET ledger = ?2 WHERE result = ?1");
+  Prepared keep(db, "UPDATE results SET body = ?2, model_version = ?3 WHERE id = ?1");
+  Prepared refer(db, "UPDATE simulations SET ledger = ?2 WHERE result = ?1");
   while (query.executeStep()) {
     v1::SimulationResult result;
     if (!result.ParseFromString(query.getColumn(1).getString())) continue;
     v1::SimulationResult ledger;
     ledger.mutable_assumptions()->Swap(result.mutable_assumptions());
-    keep.bind(1, query.getColumn(0).getInt64());
-    bind_blob(keep, 2, result.SerializeAsString());
-    keep.bind(3, result.model_version());
-    keep.exec();
-    keep.reset();
-    refer.bind(1, query.getColumn(0).getInt64());
-    refer.bind(2, ledger_row(db, ledger.SerializeAsString()));
-    refer.exec();
-    refer.reset();
+    keep.run(query.getColumn(0).getInt64(), Blob{result.SerializeAsString()},
+             result.model_version());
+    refer.run(query.getColumn(0).getInt64(), ledger_row(db, ledger.SerializeAsString()));
   }
 }
 
@@ -113,9 +104,7 @@ void add_checksums(Connection& db) {
 
 /// The key of page tokens is made with the table, so that there always is one.
 void start_token_log(Connection& db) {
-  SQLite::Statement insert(db, "INSERT INTO token_log VALUES (1, 0, 0, ?)");
-  bind_blob(insert, 1, random_bytes(32));
-  insert.exec();
+  execute(db, "INSERT INTO token_log VALUES (1, 0, 0, ?)", Blob{random_bytes(32)});
 }
 
 void bring_from(Connection& database, int from, int to, Microseconds now) {

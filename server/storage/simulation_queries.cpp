@@ -16,14 +16,11 @@ namespace {
 std::int64_t count_all(Connection& db, const SimulationQuery& query, const std::string& where,
                        const std::vector<PropertyValue>& values) {
   if (query.restrictions.empty()) {
-    Prepared counted(db, "SELECT simulations FROM projects WHERE name = ?");
-    counted.bind(1, query.project);
+    Prepared counted(db, "SELECT simulations FROM projects WHERE name = ?", query.project);
     return counted.executeStep() ? counted.getColumn(0).getInt64() : 0;
   }
   SQLite::Statement count(db, "SELECT count(*) FROM simulations " + where);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    bind_value(count, static_cast<int>(i) + 1, values[i]);
-  }
+  bind_values(count, values);
   count.executeStep();
   return count.getColumn(0).getInt64();
 }
@@ -45,9 +42,7 @@ Page<StoredSimulation> query_simulations(Connection& db, const SimulationQuery& 
   sql += " ORDER BY create_time" + direction + ", number" + direction + " LIMIT ?";
   values.emplace_back(std::int64_t{query.limit + 1});
   const auto run = [&](SQLite::Statement& statement) {
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      bind_value(statement, static_cast<int>(i) + 1, values[i]);
-    }
+    bind_values(statement, values);
     return read_page<StoredSimulation>(statement, query.limit, query.byte_limit, kRequestColumn,
                                        stored_simulation);
   };

@@ -28,23 +28,6 @@ std::optional<Microseconds> time_of(const SQLite::Column& column) {
   return column.getInt64();
 }
 
-void bind_optional(SQLite::Statement& statement, int index,
-                   const std::optional<std::int64_t>& value) {
-  if (value) {
-    statement.bind(index, *value);
-  } else {
-    statement.bind(index);
-  }
-}
-
-void bind_text_or_null(SQLite::Statement& statement, int index, const std::string& text) {
-  if (text.empty()) {
-    statement.bind(index);
-  } else {
-    statement.bind(index, text);
-  }
-}
-
 /// Row of the result with this key in a project: projects share no results, as a cache hit would
 /// tell one project what another has computed.
 std::optional<std::int64_t> result_row(Connection& db, const std::string& project,
@@ -52,33 +35,27 @@ std::optional<std::int64_t> result_row(Connection& db, const std::string& projec
   Prepared query(db,
                  "SELECT id FROM results "
                  "WHERE project = ? AND input_hash = ? AND model_version = ? AND platform = ? AND "
-                 "platform <> ''");
-  query.bind(1, project);
-  query.bind(2, key.input_hash);
-  query.bind(3, key.model_version);
-  query.bind(4, key.platform);
-  if (!query.executeStep()) return std::nullopt;
-  return query.getColumn(0).getInt64();
+                 "platform <> ''",
+                 project, key.input_hash, key.model_version, key.platform);
+  return query.first([](SQLite::Statement& row) { return row.getColumn(0).getInt64(); });
 }
 
 /// Project of a simulation. Throws SQLite::Exception if the simulation does not exist.
 std::string project_of(Connection& db, std::int64_t id) {
-  Prepared query(db, "SELECT project FROM simulations WHERE id = ?");
-  query.bind(1, id);
+  Prepared query(db, "SELECT project FROM simulations WHERE id = ?", id);
   if (!query.executeStep()) throw SQLite::Exception("no such simulation");
   return query.getColumn(0).getString();
 }
 
 /// Takes the next number of a project. Numbers of removed simulations are not given again.
 std::int64_t next_number(Connection& db, const std::string& project) {
-  Prepared update(db,
-                  "UPDATE projects SET last_number = last_number + 1 WHERE name = ? "
-                  "RETURNING last_number");
-  update.bind(1, project);
-  if (!update.executeStep()) throw SQLite::Exception("no such project");
-  const std::int64_t number = update.getColumn(0).getInt64();
-  update.executeStep();  // to its end: only then is it done
-  return number;
+  const auto number = Prepared(db,
+                               "UPDATE projects SET last_number = last_number + 1 WHERE name = ? "
+                               "RETURNING last_number",
+                               project)
+                          .returned();
+  if (!number) throw SQLite::Exception("no such project");
+  return *number;
 }
 
 /// Returns the simulation that an earlier request with the same request_id added to the
@@ -95,11 +72,7 @@ std::optional<AddOutcome> repeated_request(Connection& db, const NewSimulation& 
 void insert_labels(Connection& db, std::int64_t id,
                    const std::vector<std::pair<std::string, std::string>>& labels) {
   for (const auto& [key, value] : labels) {
-    Prepared label(db, "INSERT INTO simulation_labels VALUES (?, ?, ?)");
-    label.bind(1, key);
-    label.bind(2, value);
-    label.bind(3, id);
-    label.exec();
+    execute(db, "INSERT INTO simulation_labels VALUES (?, ?, ?)", key, value, id);
   }
 }
 
@@ -107,43 +80,35 @@ void insert_labels(Connection& db, std::int64_t id,
 /// revisions: a read before it would be one more, and one outside the transaction could be stale.
 std::int64_t insert_row(Connection& db, const NewSimulation& simulation, std::int64_t number,
                         Microseconds now) {
+  std::optional<std::int64_t> ledger;
+  if (!simulation.ledger.empty()) ledger = ledger_row(db, simulation.ledger);
+  const std::string* const names[] = {&simulation.lubricant_revision, &simulation.gear_set_revision,
+                                      &simulation.surface_revision, &simulation.vehicle_revision};
+  std::vector<RevisionRow> revisions;
+  for (const std::string* name : names) {
+    revisions.push_back(revision_row(simulation.project, *name));
+  }
   Prepared insert(
       db,
       "INSERT INTO simulations (state, sequence, create_time, deadline_time, request, request_id, "
       "request_hash, is_forced, input_hash, ledger, client, cost_seconds, principal, "
       "scheduling_class, lubricant, gear_set, surface, vehicle, project, number) "
-      "VALUES (1, 1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+      "VALUES (1, 1, ?, ?, ?, nullif(?, ''), ?, ?, ?, ?, ?, ?, ?, ?, "
       "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
       "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
       "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
       "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), ?, ?) "
-      "RETURNING id, lubricant, gear_set, surface, vehicle");
-  insert.bind(1, now);
-  bind_optional(insert, 2, simulation.deadline_time);
-  bind_blob(insert, 3, simulation.request);
-  bind_text_or_null(insert, 4, simulation.request_id);
-  insert.bind(5, simulation.request_hash);
-  insert.bind(6, simulation.is_forced ? 1 : 0);
-  insert.bind(7, simulation.key.input_hash);
-  if (!simulation.ledger.empty()) insert.bind(8, ledger_row(db, simulation.ledger));
-  insert.bind(9, simulation.client);
-  insert.bind(10, simulation.cost_seconds);
-  insert.bind(11, simulation.principal);
-  insert.bind(12, simulation.scheduling_class);
-  const std::string* const revisions[] = {
-      &simulation.lubricant_revision, &simulation.gear_set_revision, &simulation.surface_revision,
-      &simulation.vehicle_revision};
-  for (int i = 0; i < 4; ++i) {
-    const std::size_t at = std::min(revisions[i]->find('@'), revisions[i]->size());
-    insert.bind(13 + 2 * i, full_name(simulation.project, revisions[i]->substr(0, at)));
-    if (at < revisions[i]->size()) insert.bind(14 + 2 * i, std::stoi(revisions[i]->substr(at + 1)));
-  }
-  insert.bind(21, simulation.project);
-  insert.bind(22, number);
+      "RETURNING id, lubricant, gear_set, surface, vehicle",
+      now, simulation.deadline_time, Blob{simulation.request}, simulation.request_id,
+      simulation.request_hash, simulation.is_forced, simulation.key.input_hash, ledger,
+      simulation.client, simulation.cost_seconds, simulation.principal, simulation.scheduling_class,
+      revisions[0].name, revisions[0].number, revisions[1].name, revisions[1].number,
+      revisions[2].name, revisions[2].number, revisions[3].name, revisions[3].number,
+      simulation.project, number);
   insert.executeStep();
   const std::int64_t id = insert.getColumn(0).getInt64();
   for (int i = 0; i < 4; ++i) {
-    if (!revisions[i]->empty() && insert.getColumn(1 + i).isNull()) {
+    if (!names[i]->empty() && insert.getColumn(1 + i).isNull()) {
       throw SQLite::Exception("no such revision");
     }
   }
@@ -201,18 +166,11 @@ void insert_history(Connection& db, std::int64_t result,
 
 std::int64_t insert_result(Connection& db, const std::string& project, const NewResult& result,
                            const std::vector<CompressedColumn>& history, Microseconds now) {
-  Prepared insert(db,
-                  "INSERT INTO results (input_hash, model_version, platform, create_time, body, "
-                  "checksum, stored_bytes, project) VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
-  insert.bind(1, result.key.input_hash);
-  insert.bind(2, result.key.model_version);
-  insert.bind(3, result.key.platform);
-  insert.bind(4, now);
-  bind_blob(insert, 5, result.body);
-  insert.bind(6, checksum(result.body));
-  insert.bind(7, size_of(result, history));
-  insert.bind(8, project);
-  insert.exec();
+  execute(db,
+          "INSERT INTO results (input_hash, model_version, platform, create_time, body, "
+          "checksum, stored_bytes, project) VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
+          result.key.input_hash, result.key.model_version, result.key.platform, now,
+          Blob{result.body}, checksum(result.body), size_of(result, history), project);
   const std::int64_t row = db.getLastInsertRowid();
   insert_history(db, row, history);
   return row;
@@ -220,8 +178,7 @@ std::int64_t insert_result(Connection& db, const std::string& project, const New
 
 /// Whether a stored result and its history are what was written.
 bool is_whole_result(Connection& db, std::int64_t row) {
-  Prepared body(db, "SELECT body, checksum FROM results WHERE id = ?");
-  body.bind(1, row);
+  Prepared body(db, "SELECT body, checksum FROM results WHERE id = ?", row);
   if (!body.executeStep()) return false;
   if (checksum(bytes_of(body.getColumn(0))) != body.getColumn(1).getInt64()) return false;
   const std::vector<std::int64_t> columns = query_history_shape(db, row).columns;
@@ -232,16 +189,9 @@ bool is_whole_result(Connection& db, std::int64_t row) {
 /// Writes a result in the place of one that is damaged, for all simulations that have it.
 void repair_result(Connection& db, std::int64_t row, const NewResult& result,
                    const std::vector<CompressedColumn>& history) {
-  Prepared update(db,
-                  "UPDATE results SET body = ?2, checksum = ?3, stored_bytes = ?4 WHERE id = ?1");
-  update.bind(1, row);
-  bind_blob(update, 2, result.body);
-  update.bind(3, checksum(result.body));
-  update.bind(4, size_of(result, history));
-  update.exec();
-  Prepared clear(db, "DELETE FROM history_columns WHERE result = ?");
-  clear.bind(1, row);
-  clear.exec();
+  execute(db, "UPDATE results SET body = ?2, checksum = ?3, stored_bytes = ?4 WHERE id = ?1", row,
+          Blob{result.body}, checksum(result.body), size_of(result, history));
+  execute(db, "DELETE FROM history_columns WHERE result = ?", row);
   insert_history(db, row, history);
 }
 
@@ -259,17 +209,14 @@ std::optional<StoredEvent> not_reproduced(Connection& db, std::int64_t id, Micro
 }
 
 bool is_running(Connection& db, std::int64_t id) {
-  Prepared query(db, "SELECT 1 FROM simulations WHERE id = ? AND state = 2");
-  query.bind(1, id);
+  Prepared query(db, "SELECT 1 FROM simulations WHERE id = ? AND state = 2", id);
   return query.executeStep();
 }
 
 /// Bit for bit, histories too.
 bool is_same_result(Connection& db, std::int64_t row, const NewResult& result) try {
-  Prepared body(db, "SELECT 1 FROM results WHERE id = ? AND body = ? AND checksum = ?");
-  body.bind(1, row);
-  bind_blob(body, 2, result.body);
-  body.bind(3, checksum(result.body));
+  Prepared body(db, "SELECT 1 FROM results WHERE id = ? AND body = ? AND checksum = ?", row,
+                Blob{result.body}, checksum(result.body));
   if (!body.executeStep()) return false;
   const HistoryShape shape = query_history_shape(db, row);
   if (shape.names.size() != result.history.size()) return false;
@@ -290,35 +237,24 @@ bool is_same_result(Connection& db, std::int64_t row, const NewResult& result) t
 bool set_labels(Connection& db, std::int64_t id, const std::string& before,
                 const std::string& request,
                 const std::vector<std::pair<std::string, std::string>>& labels) {
-  Prepared update(db, "UPDATE simulations SET request = ? WHERE id = ? AND request = ?");
-  bind_blob(update, 1, request);
-  update.bind(2, id);
-  bind_blob(update, 3, before);
-  if (update.exec() == 0) return false;
-  Prepared remove(db, "DELETE FROM simulation_labels WHERE simulation = ?");
-  remove.bind(1, id);
-  remove.exec();
+  const int changed = execute(db, "UPDATE simulations SET request = ? WHERE id = ? AND request = ?",
+                              Blob{request}, id, Blob{before});
+  if (changed == 0) return false;
+  execute(db, "DELETE FROM simulation_labels WHERE simulation = ?", id);
   insert_labels(db, id, labels);
   return true;
 }
 
 std::int64_t ledger_row(Connection& db, const std::string& body) {
   const std::string hash = sha256(body);
-  Prepared find(db, "SELECT id, body FROM ledgers WHERE content_hash = ?");
-  find.bind(1, hash);
+  Prepared find(db, "SELECT id, body FROM ledgers WHERE content_hash = ?", hash);
   if (!find.executeStep()) {
-    Prepared insert(db, "INSERT INTO ledgers (content_hash, body) VALUES (?, ?)");
-    insert.bind(1, hash);
-    bind_blob(insert, 2, body);
-    insert.exec();
+    execute(db, "INSERT INTO ledgers (content_hash, body) VALUES (?, ?)", hash, Blob{body});
     return db.getLastInsertRowid();
   }
   const std::int64_t row = find.getColumn(0).getInt64();
   if (bytes_of(find.getColumn(1)) != body) {  // damaged
-    Prepared repair(db, "UPDATE ledgers SET body = ? WHERE id = ?");
-    bind_blob(repair, 1, body);
-    repair.bind(2, row);
-    repair.exec();
+    execute(db, "UPDATE ledgers SET body = ? WHERE id = ?", Blob{body}, row);
   }
   return row;
 }
@@ -355,21 +291,27 @@ StoredSimulation stored_simulation(const SQLite::Statement& query) {
   return out;
 }
 
+/// Returns the only simulation that a condition can select.
+template <class... Values>
+std::optional<StoredSimulation> find_simulation(Connection& db, const char* where,
+                                                const Values&... values) {
+  return Prepared(db, std::string(kSimulationColumns) + where, values...).first(stored_simulation);
+}
+
 std::optional<StoredSimulation> query_simulation(Connection& db, std::int64_t id) {
-  Prepared query(db, std::string(kSimulationColumns) + "WHERE id = ?");
-  query.bind(1, id);
-  if (!query.executeStep()) return std::nullopt;
-  return stored_simulation(query);
+  return find_simulation(db, "WHERE id = ?", id);
+}
+
+std::optional<StoredSimulation> query_numbered_simulation(Connection& db,
+                                                          const std::string& project,
+                                                          std::int64_t number) {
+  return find_simulation(db, "WHERE project = ? AND number = ?", project, number);
 }
 
 std::optional<StoredSimulation> query_simulation_of_request(Connection& db,
                                                             const std::string& project,
                                                             const std::string& request_id) {
-  Prepared query(db, std::string(kSimulationColumns) + "WHERE project = ? AND request_id = ?");
-  query.bind(1, project);
-  query.bind(2, request_id);
-  if (!query.executeStep()) return std::nullopt;
-  return stored_simulation(query);
+  return find_simulation(db, "WHERE project = ? AND request_id = ?", project, request_id);
 }
 
 bool is_known_or_served(Connection& db, const NewSimulation& simulation) {
@@ -402,38 +344,21 @@ AddOutcome insert_simulation(Connection& db, const NewSimulation& simulation, Mi
 }
 
 std::optional<StoredEvent> change_state(Connection& db, const StateChange& change) {
+  const LeaseTerms lease = change.lease.value_or(LeaseTerms{.worker = ""});
   Prepared update(
       db,
       "UPDATE simulations SET state = ?2, sequence = sequence + 1, attempt = attempt + (?2 = 1), "
       "lost_attempts = lost_attempts + ?9, "
       "start_time = CASE ?2 WHEN 1 THEN NULL WHEN 2 THEN ?3 ELSE start_time END, "
       "end_time = CASE WHEN ?2 >= 3 THEN ?3 END, "
-      "error_reason = ?5, error_message = ?6, result = ?7, cache_hit = ?8, "
-      "lease_worker = ?11, lease_expire_time = ?12 "
+      "error_reason = nullif(?5, ''), error_message = nullif(?6, ''), result = ?7, cache_hit = ?8, "
+      "lease_worker = nullif(?11, ''), lease_expire_time = CASE WHEN ?11 <> '' THEN ?12 END "
       "WHERE id = ?1 AND state = coalesce(?4, state) AND state <= 2 AND state <> ?2 "
       "AND attempt = coalesce(?10, attempt) "
-      "RETURNING sequence, attempt, start_time");
-  update.bind(1, change.id);
-  update.bind(2, static_cast<int>(change.to));
-  update.bind(3, change.time);
-  if (change.from) {
-    update.bind(4, static_cast<int>(*change.from));
-  } else {
-    update.bind(4);
-  }
-  bind_text_or_null(update, 5, change.error_reason);
-  bind_text_or_null(update, 6, change.error_message);
-  bind_optional(update, 7, change.result);
-  update.bind(8, change.cache_hit ? 1 : 0);
-  update.bind(9, change.attempt_is_lost ? 1 : 0);
-  bind_optional(update, 10, change.attempt);
-  if (change.lease) {
-    update.bind(11, change.lease->worker);
-    update.bind(12, change.lease->expire_time);
-  } else {
-    update.bind(11);
-    update.bind(12);
-  }
+      "RETURNING sequence, attempt, start_time",
+      change.id, change.to, change.time, change.from, change.error_reason, change.error_message,
+      change.result, change.cache_hit, change.attempt_is_lost, change.attempt, lease.worker,
+      lease.expire_time);
   if (!update.executeStep()) return std::nullopt;
   StoredEvent event{.simulation = change.id,
                     .sequence = update.getColumn(0).getInt64(),
@@ -451,9 +376,8 @@ std::optional<StoredEvent> start_simulation(Connection& db, std::int64_t id, Mic
                                             const ResultKey& key, const LeaseTerms& lease) {
   Prepared update(db,
                   "UPDATE simulations SET input_hash = ? WHERE id = ? AND state = 1 RETURNING "
-                  "is_forced, project");
-  update.bind(1, key.input_hash);
-  update.bind(2, id);
+                  "is_forced, project",
+                  key.input_hash, id);
   if (!update.executeStep()) return std::nullopt;
   const bool is_forced = update.getColumn(0).getInt() != 0;
   const std::string project = update.getColumn(1).getString();
@@ -475,8 +399,8 @@ std::optional<std::string> query_result(Connection& db, std::int64_t id) {
                  "SELECT r.body, r.checksum, l.body, l.content_hash, s.project, s.number "
                  "FROM simulations s "
                  "JOIN results r ON r.id = s.result "
-                 "LEFT JOIN ledgers l ON l.id = s.ledger WHERE s.id = ?");
-  query.bind(1, id);
+                 "LEFT JOIN ledgers l ON l.id = s.ledger WHERE s.id = ?",
+                 id);
   if (!query.executeStep()) return std::nullopt;
   const std::string_view result = bytes_of(query.getColumn(0));
   const std::string_view ledger = bytes_of(query.getColumn(2));
@@ -516,8 +440,7 @@ std::optional<StoredEvent> finish_simulation(Connection& db, std::int64_t id, Mi
 
 std::optional<StoredEvent> lose_attempt(Connection& db, std::int64_t id, int attempt,
                                         Microseconds now, const std::string& reason) {
-  Prepared find(db, "SELECT lost_attempts FROM simulations WHERE id = ?");
-  find.bind(1, id);
+  Prepared find(db, "SELECT lost_attempts FROM simulations WHERE id = ?", id);
   if (!find.executeStep()) return std::nullopt;
   const int lost = find.getColumn(0).getInt() + 1;
   StateChange change{.id = id, .to = StoredState::kQueued, .time = now, .reason = reason};
@@ -534,22 +457,18 @@ std::optional<StoredEvent> lose_attempt(Connection& db, std::int64_t id, int att
 }
 
 bool extend_lease(Connection& db, std::int64_t id, int attempt, Microseconds expire_time) {
-  Prepared update(db,
-                  "UPDATE simulations SET lease_expire_time = ? "
-                  "WHERE id = ? AND state = 2 AND attempt = ?");
-  update.bind(1, expire_time);
-  update.bind(2, id);
-  update.bind(3, attempt);
-  return update.exec() > 0;
+  return execute(db,
+                 "UPDATE simulations SET lease_expire_time = ? "
+                 "WHERE id = ? AND state = 2 AND attempt = ?",
+                 expire_time, id, attempt) > 0;
 }
 
 std::vector<UnfinishedSimulation> requeue_lost(Connection& db, Microseconds now) {
   std::vector<std::pair<std::int64_t, int>> lost;
   Prepared find(db,
                 "SELECT id, attempt FROM simulations WHERE state IN (1, 2) AND state = 2 AND "
-                "(lease_worker = ? OR lease_expire_time <= ?)");
-  find.bind(1, LeaseTerms::kLocalWorker);
-  find.bind(2, now);
+                "(lease_worker = ? OR lease_expire_time <= ?)",
+                LeaseTerms::kLocalWorker, now);
   while (find.executeStep()) {
     lost.emplace_back(find.getColumn(0).getInt64(), find.getColumn(1).getInt());
   }

@@ -30,6 +30,9 @@ inline constexpr int kRequestColumn = 8;
 StoredSimulation stored_simulation(const SQLite::Statement& query);
 
 std::optional<StoredSimulation> query_simulation(Connection& db, std::int64_t id);
+std::optional<StoredSimulation> query_numbered_simulation(Connection& db,
+                                                          const std::string& project,
+                                                          std::int64_t number);
 std::optional<StoredSimulation> query_simulation_of_request(Connection& db,
                                                             const std::string& project,
                                                             const std::string& request_id);

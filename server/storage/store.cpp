@@ -201,9 +201,7 @@ void Store::add_project(const std::string& project, const std::vector<NewResourc
                         Microseconds now) {
   write({}, [&](Connection& db) {
     SQLite::Transaction transaction(db);
-    Prepared insert(db, "INSERT INTO projects (name) VALUES (?) ON CONFLICT DO NOTHING");
-    insert.bind(1, project);
-    insert.exec();
+    execute(db, "INSERT INTO projects (name) VALUES (?) ON CONFLICT DO NOTHING", project);
     for (const NewResource& each : resources) {
       const std::string name = full_name(project, each.name);
       if (!is_taken(db, name)) insert_resource(db, {name, each.body}, now);
@@ -241,10 +239,9 @@ std::int64_t Store::result_bytes(const std::string& project, const CallLimits& l
   return read(limits, [&](Connection& db) {
     Prepared sum(db,
                  "SELECT (SELECT coalesce(sum(stored_bytes), 0) FROM results WHERE project = ?1) + "
-                 "(SELECT coalesce(sum(stored_bytes), 0) FROM campaigns WHERE project = ?1)");
-    sum.bind(1, project);
-    sum.executeStep();
-    return sum.getColumn(0).getInt64();
+                 "(SELECT coalesce(sum(stored_bytes), 0) FROM campaigns WHERE project = ?1)",
+                 project);
+    return sum.value().getInt64();
   });
 }
 
@@ -255,10 +252,9 @@ double Store::unfinished_seconds(const std::string& project, const CallLimits& l
                  "WHERE project = ?1 AND state IN (1, 2)) + "
                  "(SELECT coalesce(sum(cost_seconds * (1 - 1.0 * points_done / "
                  "(candidates * conditions))), 0) FROM campaigns INDEXED BY running_campaigns "
-                 "WHERE project = ?1 AND state = 1)");
-    sum.bind(1, project);
-    sum.executeStep();
-    return sum.getColumn(0).getDouble();
+                 "WHERE project = ?1 AND state = 1)",
+                 project);
+    return sum.value().getDouble();
   });
 }
 

@@ -22,26 +22,24 @@ void Store::add_resources(const std::vector<NewResource>& resources, Microsecond
 }
 
 std::optional<StoredResource> Store::resource(const std::string& name, const CallLimits& limits) {
-  return read(limits, [&](Connection& db) -> std::optional<StoredResource> {
+  return read(limits, [&](Connection& db) {
     Prepared query(db,
                    std::string(kResourceColumns) +
-                       "FROM resources r JOIN revisions v ON v.id = r.present WHERE r.name = ?");
-    query.bind(1, name);
-    if (!query.executeStep()) return std::nullopt;
-    return stored_resource(query);
+                       "FROM resources r JOIN revisions v ON v.id = r.present WHERE r.name = ?",
+                   name);
+    return query.first(stored_resource);
   });
 }
 
 std::optional<StoredResource> Store::revision(const std::string& name, int revision,
                                               const CallLimits& limits) {
-  return read(limits, [&](Connection& db) -> std::optional<StoredResource> {
-    Prepared query(db, std::string(kResourceColumns) +
-                           "FROM resources r JOIN revisions v ON v.resource = r.id "
-                           "WHERE r.name = ? AND v.revision = ?");
-    query.bind(1, name);
-    query.bind(2, revision);
-    if (!query.executeStep()) return std::nullopt;
-    return stored_resource(query);
+  return read(limits, [&](Connection& db) {
+    Prepared query(db,
+                   std::string(kResourceColumns) +
+                       "FROM resources r JOIN revisions v ON v.resource = r.id "
+                       "WHERE r.name = ? AND v.revision = ?",
+                   name, revision);
+    return query.first(stored_resource);
   });
 }
 
@@ -52,13 +50,12 @@ Page<StoredResource> Store::resources(const ResourceQuery& query, const CallLimi
 Page<StoredResource> Store::revisions(const std::string& name, int before, int limit,
                                       std::size_t byte_limit, const CallLimits& limits) {
   return read(limits, [&](Connection& db) {
-    Prepared query(db, std::string(kResourceColumns) +
-                           "FROM resources r JOIN revisions v ON v.resource = r.id "
-                           "WHERE r.name = ? AND v.revision < ? "
-                           "ORDER BY v.revision DESC LIMIT ?");
-    query.bind(1, name);
-    query.bind(2, before == 0 ? std::numeric_limits<int>::max() : before);
-    query.bind(3, limit + 1);
+    Prepared query(db,
+                   std::string(kResourceColumns) +
+                       "FROM resources r JOIN revisions v ON v.resource = r.id "
+                       "WHERE r.name = ? AND v.revision < ? "
+                       "ORDER BY v.revision DESC LIMIT ?",
+                   name, before == 0 ? std::numeric_limits<int>::max() : before, limit + 1);
     return read_page<StoredResource>(query, limit, byte_limit, kBodyColumn, stored_resource);
   });
 }
@@ -68,9 +65,8 @@ std::vector<std::string> Store::resource_names(const std::string& project,
                                                const CallLimits& limits) {
   return read(limits, [&](Connection& db) {
     Prepared query(
-        db,
-        "SELECT name FROM resources WHERE collection = ? AND delete_time IS NULL ORDER BY name");
-    query.bind(1, full_name(project, collection));
+        db, "SELECT name FROM resources WHERE collection = ? AND delete_time IS NULL ORDER BY name",
+        full_name(project, collection));
     std::vector<std::string> names;
     while (query.executeStep()) names.push_back(relative_name(query.getColumn(0).getString()));
     return names;
@@ -107,18 +103,13 @@ bool Store::change(const CallLimits& limits, const StoredResource& present, cons
 bool Store::delete_resource(const StoredResource& present, Microseconds now,
                             const CallLimits& limits) {
   return change(limits, present, [&](Connection& db) {
-    Prepared mark(db, "UPDATE resources SET delete_time = ? WHERE id = ?");
-    mark.bind(1, now);
-    mark.bind(2, present.id);
-    mark.exec();
+    execute(db, "UPDATE resources SET delete_time = ? WHERE id = ?", now, present.id);
   });
 }
 
 bool Store::undelete_resource(const StoredResource& present, const CallLimits& limits) {
   return change(limits, present, [&](Connection& db) {
-    Prepared mark(db, "UPDATE resources SET delete_time = NULL WHERE id = ?");
-    mark.bind(1, present.id);
-    mark.exec();
+    execute(db, "UPDATE resources SET delete_time = NULL WHERE id = ?", present.id);
   });
 }
 

@@ -33,13 +33,8 @@ std::optional<StoredSimulation> Store::simulation(std::int64_t id, const CallLim
 std::optional<StoredSimulation> Store::numbered_simulation(const std::string& project,
                                                            std::int64_t number,
                                                            const CallLimits& limits) {
-  return read(limits, [&](Connection& db) -> std::optional<StoredSimulation> {
-    Prepared query(db, std::string(kSimulationColumns) + "WHERE project = ? AND number = ?");
-    query.bind(1, project);
-    query.bind(2, number);
-    if (!query.executeStep()) return std::nullopt;
-    return stored_simulation(query);
-  });
+  return read(limits,
+              [&](Connection& db) { return query_numbered_simulation(db, project, number); });
 }
 
 std::optional<StoredSimulation> Store::simulation_of_request(const std::string& project,
@@ -57,10 +52,7 @@ std::optional<StoredSimulation> Store::set_pinned(std::int64_t id, bool is_pinne
                                                   const CallLimits& limits) {
   std::optional<StoredSimulation> out;
   write_together(limits, [&](Connection& db) {
-    Prepared update(db, "UPDATE simulations SET pinned = ? WHERE id = ?");
-    update.bind(1, is_pinned ? 1 : 0);
-    update.bind(2, id);
-    update.exec();
+    execute(db, "UPDATE simulations SET pinned = ? WHERE id = ?", is_pinned, id);
     out = query_simulation(db, id);
   });
   return out;
@@ -83,8 +75,7 @@ Store::Removal Store::remove_simulation(std::int64_t id, const std::optional<std
                                         const CallLimits& limits) {
   return write(limits, [&](Connection& db) {
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    Prepared query(db, "SELECT state, pinned, request FROM simulations WHERE id = ?");
-    query.bind(1, id);
+    Prepared query(db, "SELECT state, pinned, request FROM simulations WHERE id = ?", id);
     if (!query.executeStep()) return Removal::kAbsent;
     if (query.getColumn(0).getInt() < static_cast<int>(StoredState::kSucceeded)) {
       return Removal::kUnfinished;
@@ -213,8 +204,7 @@ std::optional<std::string> Store::result(std::int64_t id, const CallLimits& limi
 
 HistoryShape Store::history_shape(std::int64_t id, const CallLimits& limits) {
   return read(limits, [&](Connection& db) {
-    Prepared query(db, "SELECT result FROM simulations WHERE id = ?");
-    query.bind(1, id);
+    Prepared query(db, "SELECT result FROM simulations WHERE id = ?", id);
     const bool has_result = query.executeStep() && !query.getColumn(0).isNull();
     return has_result ? query_history_shape(db, query.getColumn(0).getInt64()) : HistoryShape();
   });

@@ -41,26 +41,15 @@ std::optional<Microseconds> time_in(const SQLite::Column& column) {
 }
 
 void insert_token(Connection& db, const StoredToken& token) {
-  Prepared insert(db,
-                  "INSERT INTO tokens (hash, name, scope, projects, create_time, expire_time, "
-                  "calls_per_second, streams, processor_hours) "
-                  "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
-  insert.bind(1, token.hash);
-  insert.bind(2, token.name);
-  insert.bind(3, static_cast<int>(token.scope));
-  insert.bind(4, joined(token.projects));
-  insert.bind(5, token.create_time);
-  if (token.expire_time) insert.bind(6, *token.expire_time);
-  if (token.calls_per_second) insert.bind(7, *token.calls_per_second);
-  if (token.streams) insert.bind(8, *token.streams);
-  if (token.processor_hours) insert.bind(9, *token.processor_hours);
-  insert.exec();
+  execute(db,
+          "INSERT INTO tokens (hash, name, scope, projects, create_time, expire_time, "
+          "calls_per_second, streams, processor_hours) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
+          token.hash, token.name, token.scope, joined(token.projects), token.create_time,
+          token.expire_time, token.calls_per_second, token.streams, token.processor_hours);
 }
 
 bool has_valid_token(Connection& db, const std::string& name, Microseconds now) {
-  Prepared query(db, std::string("SELECT 1 FROM tokens WHERE name = ?1 AND ") + kValid);
-  query.bind(1, name);
-  query.bind(2, now);
+  Prepared query(db, std::string("SELECT 1 FROM tokens WHERE name = ?1 AND ") + kValid, name, now);
   return query.executeStep();
 }
 
@@ -134,15 +123,12 @@ bool TokenTable::replace(const StoredToken& token, Microseconds end) {
   return translated([&] {
     SQLite::Transaction transaction(connection_, SQLite::TransactionBehavior::IMMEDIATE);
     if (!has_valid_token(connection_, token.name, token.create_time)) return false;
-    const bool at_once = end <= token.create_time;
-    Prepared change(connection_, std::string(at_once ? "UPDATE tokens SET revoke_time = ?2"
-                                                     : "UPDATE tokens SET expire_time = "
-                                                       "min(coalesce(expire_time, ?3), ?3)") +
-                                     " WHERE name = ?1 AND " + kValid);
-    change.bind(1, token.name);
-    change.bind(2, token.create_time);
-    if (!at_once) change.bind(3, end);
-    change.exec();
+    execute(connection_,
+            std::string("UPDATE tokens SET revoke_time = CASE WHEN ?3 <= ?2 THEN ?2 END, "
+                        "expire_time = CASE WHEN ?3 <= ?2 THEN expire_time "
+                        "ELSE min(coalesce(expire_time, ?3), ?3) END WHERE name = ?1 AND ") +
+                kValid,
+            token.name, token.create_time, end);
     insert_token(connection_, token);
     count_change(connection_);
     transaction.commit();
@@ -153,12 +139,11 @@ bool TokenTable::replace(const StoredToken& token, Microseconds end) {
 int TokenTable::revoke(const std::string& name, Microseconds now) {
   return translated([&] {
     SQLite::Transaction transaction(connection_, SQLite::TransactionBehavior::IMMEDIATE);
-    Prepared change(connection_, std::string("UPDATE tokens SET revoke_time = ?2 WHERE name = ?1 "
-                                             "AND ") +
-                                     kValid);
-    change.bind(1, name);
-    change.bind(2, now);
-    const int count = change.exec();
+    const int count = execute(connection_,
+                              std::string("UPDATE tokens SET revoke_time = ?2 WHERE name = ?1 "
+                                          "AND ") +
+                                  kValid,
+                              name, now);
     count_change(connection_);
     transaction.commit();
     return count;
@@ -187,11 +172,7 @@ std::int64_t TokenTable::acknowledged_change() {
 }
 
 void TokenTable::acknowledge(std::int64_t change) {
-  translated([&] {
-    Prepared update(connection_, "UPDATE token_log SET acknowledged = ?");
-    update.bind(1, change);
-    update.exec();
-  });
+  translated([&] { execute(connection_, "UPDATE token_log SET acknowledged = ?", change); });
 }
 
 std::string TokenTable::page_token_key() {
