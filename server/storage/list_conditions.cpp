@@ -44,9 +44,7 @@ std::string operator_of(Comparison comparison) {
 bool is_rare(Connection& db, const std::string& from_labels,
              const std::vector<PropertyValue>& values) {
   SQLite::Statement count(db, "SELECT count(*) FROM (SELECT 1" + from_labels + " LIMIT ?)");
-  int index = 0;
-  for (const PropertyValue& value : values) bind_value(count, ++index, value);
-  count.bind(++index, kSelectiveLabelLimit);
+  count.bind(bind_values(count, values) + 1, kSelectiveLabelLimit);
   count.executeStep();
   return count.getColumn(0).getInt() < kSelectiveLabelLimit;
 }
@@ -110,22 +108,28 @@ Condition one_condition(Connection& db, const std::string& table, const std::str
     add_display_name_function(db, table);
     column = "display_name(request)";
   }
-  if (restriction.comparison == Comparison::kContains) {
-    return {"instr(lower(" + column + "), lower(?)) > 0", {restriction.value}};
-  }
-  if (restriction.comparison == Comparison::kPresent) return {column + " IS NOT NULL", {}};
-  return {column + " " + operator_of(restriction.comparison) + " ?", {restriction.value}};
+  return compared(column, restriction);
 }
 
 }  // namespace
+
+Condition compared(const std::string& column, const Restriction& restriction) {
+  switch (restriction.comparison) {
+    case Comparison::kContains:
+      return {"instr(lower(" + column + "), lower(?)) > 0", {restriction.value}};
+    case Comparison::kPresent:
+      return {column + " IS NOT NULL", {}};
+    default:
+      return {column + " " + operator_of(restriction.comparison) + " ?", {restriction.value}};
+  }
+}
 
 Condition list_condition(Connection& db, const std::string& table, const std::string& project,
                          const std::vector<Restriction>& restrictions) {
   Condition out{"project = ?", {project}};
   for (const Restriction& each : restrictions) {
-    Condition next = one_condition(db, table, project, each);
-    out.sql += " AND " + next.sql;
-    out.values.insert(out.values.end(), next.values.begin(), next.values.end());
+    const Condition next = one_condition(db, table, project, each);
+    out.add(" AND " + next.sql, next.values);
   }
   return out;
 }

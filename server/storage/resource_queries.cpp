@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "server/storage/list_conditions.h"
 #include "server/storage/resource_rows.h"
 
 namespace tribodyn::server {
@@ -13,49 +14,9 @@ using Comparison = Restriction::Comparison;
 
 constexpr int kSelectiveRowLimit = 500;  ///< rows that a query may sort
 
-/// A part of an SQL statement and the values of its parameters, in their order.
-struct Clause {
-  std::string sql;
-  std::vector<PropertyValue> values;
-
-  void add(const std::string& more, std::vector<PropertyValue> more_values = {}) {
-    sql += more;
-    values.insert(values.end(), more_values.begin(), more_values.end());
-  }
-};
-
-void bind_all(SQLite::Statement& statement, const std::vector<PropertyValue>& values) {
-  int index = 0;
-  for (const PropertyValue& value : values) bind_value(statement, ++index, value);
-}
-
-/// Returns the comparison of a column with the value of a restriction.
-Clause compared(const std::string& column, const Restriction& restriction) {
-  switch (restriction.comparison) {
-    case Comparison::kEqual:
-    case Comparison::kNotEqual:  // the caller negates it
-      return {column + " = ?", {restriction.value}};
-    case Comparison::kLess:
-      return {column + " < ?", {restriction.value}};
-    case Comparison::kLessOrEqual:
-      return {column + " <= ?", {restriction.value}};
-    case Comparison::kGreater:
-      return {column + " > ?", {restriction.value}};
-    case Comparison::kGreaterOrEqual:
-      return {column + " >= ?", {restriction.value}};
-    case Comparison::kContains:
-      return {"instr(lower(" + column + "), lower(?)) > 0", {restriction.value}};
-    case Comparison::kPresent:
-      return {"TRUE", {}};
-  }
-  return {"FALSE", {}};
-}
-
 /// Returns a restriction on the name. Equal names are compared in full, others without the project.
-Clause compared_name(const std::string& project, Restriction restriction) {
-  const bool is_whole = restriction.comparison == Comparison::kEqual ||
-                        restriction.comparison == Comparison::kNotEqual;
-  if (is_whole) {
+Condition compared_name(const std::string& project, Restriction restriction) {
+  if (restriction.comparison == Comparison::kEqual) {
     restriction.value = name_in(project, std::get<std::string>(restriction.value));
     return compared("r.name", restriction);
   }
@@ -64,16 +25,17 @@ Clause compared_name(const std::string& project, Restriction restriction) {
 }
 
 /// Returns a restriction as a condition on the resource r, which works in any query.
-Clause condition(const std::string& project, const Restriction& restriction) {
-  Clause out;
+Condition condition(const std::string& project, Restriction restriction) {
+  Condition out;
   const bool negated = restriction.comparison == Comparison::kNotEqual;
+  if (negated) restriction.comparison = Comparison::kEqual;
   const std::string begin = negated ? " AND NOT " : " AND ";
   if (restriction.key == "name") {
-    const Clause test = compared_name(project, restriction);
+    const Condition test = compared_name(project, restriction);
     out.add(begin + "(" + test.sql + ")", test.values);
     return out;
   }
-  const Clause test = compared("p.value", restriction);
+  const Condition test = compared("p.value", restriction);
   out.add(begin + "EXISTS (SELECT 1 FROM properties p WHERE p.resource = r.id AND p.key = ? AND ",
           {restriction.key});
   out.add(test.sql + ")", test.values);
@@ -81,9 +43,9 @@ Clause condition(const std::string& project, const Restriction& restriction) {
 }
 
 /// Returns the condition on the rows d of the index that a restriction selects.
-Clause selected(const std::string& collection, const Restriction& restriction) {
-  const Clause test = compared("d.value", restriction);
-  Clause out{" d.collection = ? AND d.key = ? AND ", {collection, restriction.key}};
+Condition selected(const std::string& collection, const Restriction& restriction) {
+  const Condition test = compared("d.value", restriction);
+  Condition out{" d.collection = ? AND d.key = ? AND ", {collection, restriction.key}};
   out.add(test.sql, test.values);
   return out;
 }
@@ -96,10 +58,10 @@ bool has_index(const Restriction& restriction) {
 /// Returns the number of rows that a restriction selects, at most kSelectiveRowLimit.
 int count_up_to_limit(Connection& db, const std::string& collection,
                       const Restriction& restriction) {
-  const Clause rows = selected(collection, restriction);
+  const Condition rows = selected(collection, restriction);
   SQLite::Statement query(db, "SELECT count(*) FROM (SELECT 1 FROM properties d WHERE" + rows.sql +
                                   " LIMIT " + std::to_string(kSelectiveRowLimit) + ")");
-  bind_all(query, rows.values);
+  bind_values(query, rows.values);
   query.executeStep();
   return query.getColumn(0).getInt();
 }
@@ -124,8 +86,8 @@ constexpr char kJoined[] = " CROSS JOIN resources r ON r.id = d.resource";
 constexpr char kRevisions[] = " CROSS JOIN revisions v ON v.id = r.present";
 
 /// Adds the start of a page and its order.
-void add_start_and_order(Clause& sql, const ResourceQuery& query, const std::string& value_column,
-                         const std::string& name_column) {
+void add_start_and_order(Condition& sql, const ResourceQuery& query,
+                         const std::string& value_column, const std::string& name_column) {
   const std::string beyond = query.descending ? " < " : " > ";
   const std::string direction = query.descending ? " DESC" : "";
   if (query.order_key.empty()) {
@@ -140,11 +102,11 @@ void add_start_and_order(Clause& sql, const ResourceQuery& query, const std::str
   sql.add(" ORDER BY " + value_column + direction + ", " + name_column + direction);
 }
 
-void add_conditions(Clause& sql, const ResourceQuery& query, const Restriction* but) {
+void add_conditions(Condition& sql, const ResourceQuery& query, const Restriction* but) {
   if (!query.show_deleted) sql.add(" AND r.delete_time IS NULL");
   for (const Restriction& each : query.restrictions) {
     if (&each == but) continue;
-    const Clause more = condition(query.project, each);
+    const Condition more = condition(query.project, each);
     sql.add(more.sql, more.values);
   }
 }
@@ -153,8 +115,8 @@ void add_conditions(Clause& sql, const ResourceQuery& query, const Restriction* 
 enum class Purpose { kRows, kCount };
 
 /// The rows of a query, or a 1 for each of them.
-Clause statement(Connection& db, const ResourceQuery& query, Purpose purpose) {
-  Clause sql{purpose == Purpose::kRows ? kResourceColumns : "SELECT 1 ", {}};
+Condition statement(Connection& db, const ResourceQuery& query, Purpose purpose) {
+  Condition sql{purpose == Purpose::kRows ? kResourceColumns : "SELECT 1 ", {}};
   const std::string collection = full_name(query.project, query.collection);
   const std::string revisions = purpose == Purpose::kRows ? kRevisions : "";
   const bool by_name = query.order_key.empty();
@@ -168,7 +130,7 @@ Clause statement(Connection& db, const ResourceQuery& query, Purpose purpose) {
     if (equal != query.restrictions.end()) leading = &*equal;
   }
   if (leading != nullptr) {
-    const Clause rows = selected(collection, *leading);
+    const Condition rows = selected(collection, *leading);
     sql.add(std::string("FROM properties d") + kJoined + revisions);
     if (!by_name) {
       sql.add(" CROSS JOIN properties o ON o.resource = r.id AND o.key = ?", {query.order_key});
@@ -195,9 +157,9 @@ Clause statement(Connection& db, const ResourceQuery& query, Purpose purpose) {
 
 /// How many rows the query has from its start, whatever its limit.
 std::int64_t count_all(Connection& db, const ResourceQuery& query) {
-  const Clause rows = statement(db, query, Purpose::kCount);
+  const Condition rows = statement(db, query, Purpose::kCount);
   SQLite::Statement count(db, "SELECT count(*) FROM (" + rows.sql + ")");
-  bind_all(count, rows.values);
+  bind_values(count, rows.values);
   count.executeStep();
   return count.getColumn(0).getInt64();
 }
@@ -205,9 +167,9 @@ std::int64_t count_all(Connection& db, const ResourceQuery& query) {
 }  // namespace
 
 Page<StoredResource> query_resources(Connection& db, const ResourceQuery& query) {
-  const Clause sql = statement(db, query, Purpose::kRows);
+  const Condition sql = statement(db, query, Purpose::kRows);
   SQLite::Statement rows(db, sql.sql + " LIMIT " + std::to_string(query.limit + 1));
-  bind_all(rows, sql.values);
+  bind_values(rows, sql.values);
   auto page =
       read_page<StoredResource>(rows, query.limit, query.byte_limit, kBodyColumn, stored_resource);
   if (query.counts_all) {
