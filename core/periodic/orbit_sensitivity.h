@@ -34,8 +34,8 @@
 // kinks of the response at six of them, and the differences then err by up to 4e-5.) At 100 random
 // points with impacts, on 96 steps a cycle, they agree within 7.1e-4, all but those by the mean
 // speed within 2.7e-5. All derivatives together take 2.2 to 2.8 times as long as the figures of a
-// smooth point at the usual tolerance, as long as those of a point with impacts, and 2.4 to 5 times
-// as long under the improved Yasutomi law (20 to 140 km/h, AVX2, least times).
+// smooth point at the usual tolerance, also under the improved Yasutomi law, and as long as those
+// of a point with impacts (20 to 140 km/h, AVX2, least times).
 
 namespace tribodyn {
 
