@@ -15,6 +15,7 @@
 #include <csignal>
 #include <cstdio>
 #include <ctime>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -1277,7 +1278,7 @@ void measure_estimates(std::vector<Measurement>& out) {
 }  // namespace
 }  // namespace tribodyn::server
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   using namespace tribodyn::server;
   using Measure = void (*)(std::vector<tribodyn::Measurement>&);
   const std::vector<std::pair<std::string, Measure>> parts = {
@@ -1305,4 +1306,7 @@ int main(int argc, char** argv) {
     tribodyn::record(path, figures);
   }
   return 0;
+} catch (const std::exception& failure) {  // the servers that run are stopped on the way here
+  std::fprintf(stderr, "service_benchmark: %s\n", failure.what());
+  return 1;
 }

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -373,7 +374,9 @@ TEST_F(CampaignTest, CancelledKeepsItsRowsAndIsDeleted) {
             v1::Campaign::CANCELLED);
   const v1::Campaign cancelled = get(name);
   EXPECT_GT(cancelled.points_done(), 0);
-  EXPECT_EQ(read(name, {"refusal_number"}, 0, 1).at("refusal_number")[0], 0);
+  // Of two tiles that run at the same time the second may be done alone.
+  const std::vector<double> numbers = read(name, {"refusal_number"}).at("refusal_number");
+  EXPECT_GE(std::count(numbers.begin(), numbers.end(), 0.0), cancelled.points_done());
   EXPECT_TRUE(call<v1::DeleteCampaignRequest>(delete_campaign, name).ok());
   EXPECT_EQ(call<v1::GetCampaignRequest>(get_campaign, name).error().code(),
             google::rpc::NOT_FOUND);
