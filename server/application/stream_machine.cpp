@@ -100,6 +100,8 @@ bool StreamMachine::is_idle() const {
   return is_open_ && !is_stepping_ && !is_writing_ && !is_finished_;
 }
 
+// The status is a copy: during transport_.finish() this object may be destroyed, with closing_.
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
 void StreamMachine::finish(std::unique_lock<std::mutex> lock, google::rpc::Status status) {
   is_finished_ = true;
   lock.unlock();
