@@ -159,9 +159,9 @@ class PhaseSystem {
   Instant instant_;
 };
 
-/// Marches one mesh cycle on from a point of the section; time and work start from zero. Adds to
-/// `work`. Throws Refusal NO_FORWARD_ROTATION when the pinion comes to a stop, and the name of a
-/// contact's refusal when one is met.
+/// Marches a point of the section over one mesh cycle; time and work start from zero. Adds to
+/// `work`. Throws Refusal NO_FORWARD_ROTATION if the pinion stops, and a Refusal with the name of
+/// the contact's status if a contact is refused.
 void march_mesh_cycle(const GearPairSystem& system, const MarchScales& scales,
                       const MarchOptions& options, ContactSolver& contacts, SectionPoint& at,
                       SolverWork& work);

@@ -14,7 +14,8 @@ enum GrowthParameter {
   kGrowthParameters
 };
 
-/// In place of eta_g stands what it and eq 34 determine: C_2 of the improved Yasutomi law [K].
+/// The place of eta_g holds C_2 of the improved Yasutomi law [K], which follows from eta_g and
+/// eq 34.
 inline constexpr int kGlassWidth = kGlassViscosity;
 
 /// A law of growth with pressure, ready to be evaluated: core/laws/pressure_growth-inl.h.

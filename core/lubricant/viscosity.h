@@ -82,7 +82,7 @@ Real reciprocal_asymptotic_of_growth(const GrowthLaw<Real>& law, const Real& tem
   return 1 / integral;
 }
 
-/// The same with derivatives: by what the growth depends on, of which there is little, then by the
+/// The same with derivatives: first by the kGrowthArguments arguments of the growth, then by the
 /// chain rule.
 template <int kCount>
 laws::Dual<double, kCount> reciprocal_asymptotic_of_growth(

@@ -113,7 +113,7 @@ MarchPlan plan_march(const PointProblem& problem, PointStart start,
 }
 
 /// Marches a steady state once more over `cycles` mesh cycles and records it; goes on beyond them
-/// as far as the history asks. Returns the regime at the end of the record. Throws as
+/// if the history is longer. Returns the regime at the end of the record. Throws as
 /// march_mesh_cycle does, and Cancelled when `progress` returns false.
 ContactRegime record_response(const GearPairSystem& system, ContactSolver& contacts,
                               const SteadyState& steady, int cycles, const MarchOptions& options,

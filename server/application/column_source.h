@@ -89,7 +89,8 @@ class ColumnSource : public MessageSource<Response> {
   }
 
   bool is_short() const final { return rows_ <= kHistoryBlock; }
-  /// The client receives the schema before a thread that prepares a chunk takes a processor.
+  /// Not beside the schema: the thread that prepares a chunk would compete with the client for the
+  /// processors and delay the first message.
   bool may_be_ahead() const final {
     return (next_row_ > 0 || column_ > 0) && open_.has_room_for_two();
   }

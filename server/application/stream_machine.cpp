@@ -45,7 +45,7 @@ void StreamMachine::written(bool ok) {
   if (!ok) {
     closing_ = error(google::rpc::CANCELLED, v1::ERROR_REASON_CANCELLED, "the client is gone");
   }
-  if (is_stepping_) return;  // the step finds the changes
+  if (is_stepping_) return;  // that step reads what has changed
   if (!ok) return finish(std::move(lock), *closing_);
   if (!again_ && !closing_ && !prepared_ && !source_->may_continue()) return;
   is_stepping_ = true;
@@ -72,7 +72,7 @@ void StreamMachine::step() {
       return finish(std::unique_lock(mutex_), *failed);
     }
     if (!is_ahead) return;
-    // Another thread would start later than a short message takes.
+    // To wake another thread takes longer than a short message.
     if (!source_->is_short()) return transport_.run_step();
   }
 }

@@ -89,7 +89,7 @@ class StreamMachine : public Observer {
   StreamTransport& transport_;
   const google::protobuf::Message& prototype_;
   const Clock::duration unread_;
-  ReplySource source_;  // set by open(); then the step's
+  ReplySource source_;  // set by open(); then used by the thread that takes a step
   std::mutex mutex_;
   // All below are guarded by mutex_.
   bool is_open_ = false;

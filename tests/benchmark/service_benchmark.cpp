@@ -1306,7 +1306,7 @@ int main(int argc, char** argv) try {
     tribodyn::record(path, figures);
   }
   return 0;
-} catch (const std::exception& failure) {  // the servers that run are stopped on the way here
+} catch (const std::exception& failure) {  // its servers have been stopped
   std::fprintf(stderr, "service_benchmark: %s\n", failure.what());
   return 1;
 }

@@ -157,7 +157,7 @@ TEST_F(ObservabilityTest, ACallThatItsClientCancelsEndsEarlyAndIsCounted) {
   grpc::ClientContext context;
   context.AddMetadata("tribodyn-request-id", "to-be-cancelled");
   std::thread client([&] {
-    // The request has arrived by then, and the batch takes some ten times as long.
+    // By then the request has arrived; the batch takes longer.
     std::this_thread::sleep_for(std::chrono::milliseconds(kUnderSanitizer ? 1000 : 200));
     context.TryCancel();
   });
