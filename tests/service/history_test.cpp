@@ -84,5 +84,26 @@ RC_GTEST_PROP(Pyramid, AnOverviewMissesNoExtremeAndKeepsItsSize, ()) {
   }
 }
 
+RC_GTEST_PROP(Pyramid, AnOverviewToTheEndOfAColumnReadsOneLevelOnce, ()) {
+  const auto rows = *rc::gen::inRange<std::int64_t>(10, 300'000);
+  const auto points = *rc::gen::inRange<std::int64_t>(kLeastMaximumPoints, std::min(rows, 5000L));
+  const std::vector<double> column = wave(rows);
+  std::vector<std::vector<double>> levels = build_pyramid(column);
+  levels.insert(levels.begin(), column);
+  int reads = 0;
+  const ReadLevel read = [&](int level, std::int64_t first, std::int64_t count) {
+    ++reads;
+    const auto begin = levels.at(level).begin() + first;
+    return std::vector<double>(begin, begin + count);
+  };
+  const Overview over = overview(0, rows, rows, points);
+  const std::vector<double> pairs = overview_pairs(over, 0, over.pairs(), read);
+  RC_ASSERT(reads == 1);
+  RC_ASSERT(static_cast<std::int64_t>(pairs.size()) == 2 * over.pairs());
+  const auto last = column.begin() + (over.pairs() - 1) * over.rows_per_pair;
+  RC_ASSERT(pairs[pairs.size() - 2] == *std::min_element(last, column.end()));
+  RC_ASSERT(pairs.back() == *std::max_element(last, column.end()));
+}
+
 }  // namespace
 }  // namespace tribodyn::server

@@ -119,14 +119,20 @@ std::vector<double> overview_pairs(const Overview& overview, std::int64_t first,
     push(pair);
     ++k;
   }
-  const std::int64_t whole = std::min(last, overview.end / run);
+  // The last entry of a column covers the rows that are left: a range up to there ends in a whole
+  // run.
+  const bool is_to_the_end = overview.end == overview.total;
+  const std::int64_t whole =
+      std::min(last, is_to_the_end ? divide_up(overview.end, run) : overview.end / run);
   if (k < whole) {
-    const std::int64_t width = (level == 0 ? 1 : 2) * (run / stride);  // doubles in a run
-    const std::vector<double> entries = read(level, k * width, (whole - k) * width);
-    for (std::int64_t i = 0; i < static_cast<std::int64_t>(entries.size()); i += width) {
-      const std::int64_t step = level == 0 ? 1 : 2;
+    const std::int64_t step = level == 0 ? 1 : 2;      // doubles in an entry
+    const std::int64_t width = step * (run / stride);  // doubles in a run
+    const std::vector<double> entries = read(
+        level, k * width, std::min(whole * width, level_size(level, overview.total)) - k * width);
+    const auto size = static_cast<std::int64_t>(entries.size());
+    for (std::int64_t i = 0; i < size; i += width) {
       Pair pair;
-      for (std::int64_t j = i; j < i + width; j += step)
+      for (std::int64_t j = i; j < std::min(i + width, size); j += step)
         pair.add(entries[j], entries[j + step - 1]);
       push(pair);
     }
