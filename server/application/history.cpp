@@ -140,13 +140,13 @@ StreamOutcome<v1::ReadHistoryResponse> read_history(Application& application,
   using Source = std::shared_ptr<MessageSource<v1::ReadHistoryResponse>>;
   auto found = find_history(application, request.name(), call);
   if (!found.ok()) return found.error();
-  auto& [stored, shape] = found.message();
+  auto& [stored, result_bytes, shape] = found.message();
   Violations violations;
   auto rows = window(request, shape, violations);
   if (!rows) return invalid(violations);
   v1::SimulationResult result;
   parse_fields(
-      application.store.result(stored.id, call.limits).value_or(""),
+      result_bytes,
       {v1::SimulationResult::kInputWarningsFieldNumber,
        v1::SimulationResult::kModelVersionFieldNumber, v1::SimulationResult::kPlatformFieldNumber},
       result);

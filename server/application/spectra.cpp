@@ -80,14 +80,14 @@ Outcome<v1::ReadSpectrumResponse> read_spectrum(Application& application,
   if (!violations.empty()) return invalid(violations);
   const auto found = find_history(application, request.name(), call);
   if (!found.ok()) return found.error();
-  const auto& [stored, shape] = found.message();
+  const auto& [stored, result_bytes, shape] = found.message();
   const std::vector<std::size_t> columns = transformed_columns(request, shape, violations);
 
   google::protobuf::Arena arena;  // a result has hundreds of parts
   auto& simulation = *google::protobuf::Arena::CreateMessage<v1::Simulation>(&arena);
   auto& result = *google::protobuf::Arena::CreateMessage<v1::SimulationResult>(&arena);
   simulation.ParseFromString(stored.request);
-  result.ParseFromString(application.store.result(stored.id, call.limits).value_or(""));
+  result.ParseFromString(result_bytes);
   const v1::PointResult& point =
       result.points().empty() ? v1::PointResult::default_instance() : result.points(0).result();
   const TransformedPart part = part_of(simulation.operating_point().history(), point);

@@ -22,21 +22,22 @@ std::string history_name(const std::string& simulation) { return simulation + "/
 
 Outcome<StoredHistory> find_history(Application& application, const std::string& name,
                                     const CallContext& call) {
-  auto found = find_simulation(application, name, call);
-  if (!found.ok()) return found.error();
-  StoredSimulation& stored = found.message();
+  auto found = find_by_number(name, [&](std::int64_t number) {
+    return application.store.stored_history(call.project, number, call.limits);
+  });
+  if (!found.ok()) return found;
+  const StoredSimulation& stored = found.message().simulation;
   if (stored.state != StoredState::kSucceeded) {
     return not_possible(
         v1::ERROR_REASON_NO_RESULT_YET, "tribodyn.v1.Simulation", name,
         name + " has not succeeded, so it has no history",
         {{"state", v1::Simulation::State_Name(static_cast<v1::Simulation::State>(stored.state))}});
   }
-  HistoryShape shape = application.store.history_shape(stored.id, call.limits);
-  if (shape.names.empty()) {
+  if (found.message().shape.names.empty()) {
     return not_found(kHistoryType, history_name(name), name + " was run without history",
                      v1::ERROR_REASON_NO_HISTORY);
   }
-  return StoredHistory{std::move(stored), std::move(shape)};
+  return found;
 }
 
 google::rpc::Status history_evicted(const std::string& name) {

@@ -10,18 +10,12 @@
 #include "server/application/outcome.h"
 #include "server/contract/violations.h"
 #include "server/storage/history_rows.h"
-#include "server/storage/stored_simulation.h"
 
 namespace tribodyn::server {
 
-/// A simulation that has succeeded, and the columns of its history, at least one.
-struct StoredHistory {
-  StoredSimulation simulation;
-  HistoryShape shape;
-};
-
-/// Returns the history of a simulation. Returns an error as find_simulation() does, and if the
-/// simulation has no result or was run without history.
+/// Returns a simulation that has succeeded, its result and the columns of its history, at least
+/// one. Returns an error as find_simulation() does, and if the simulation has no result or was run
+/// without history.
 Outcome<StoredHistory> find_history(Application& application, const std::string& name,
                                     const CallContext& call);
 

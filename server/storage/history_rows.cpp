@@ -40,8 +40,10 @@ bool is_equal(std::span<const double> one, std::span<const double> other) {
          (one.empty() || std::memcmp(one.data(), other.data(), one.size_bytes()) == 0);
 }
 
+constexpr char kRowsOfColumn[] = "SELECT rows FROM history_columns WHERE id = ?";
+
 std::int64_t rows_of(Connection& db, std::int64_t column) {
-  Prepared query(db, "SELECT rows FROM history_columns WHERE id = ?", column);
+  Prepared query(db, kRowsOfColumn, column);
   return query.executeStep() ? query.getColumn(0).getInt64() : -1;
 }
 
@@ -49,6 +51,16 @@ std::int64_t blocks_of(Connection& db, std::int64_t column) {
   Prepared query(db, "SELECT count(*) FROM history_blocks WHERE history_column = ? AND level = 0",
                  column);
   return query.value().getInt64();
+}
+
+HistoryShape history_shape(Prepared& query) {
+  HistoryShape shape;
+  while (query.executeStep()) {
+    shape.columns.push_back(query.getColumn(0).getInt64());
+    shape.names.push_back(query.getColumn(1).getString());
+    shape.rows = query.getColumn(2).getInt64();
+  }
+  return shape;
 }
 
 }  // namespace
@@ -80,20 +92,26 @@ void insert_history_column(Connection& db, std::int64_t result, std::int64_t pos
 HistoryShape query_history_shape(Connection& db, std::int64_t result) {
   Prepared query(
       db, "SELECT id, name, rows FROM history_columns WHERE result = ? ORDER BY position", result);
-  HistoryShape shape;
-  while (query.executeStep()) {
-    shape.columns.push_back(query.getColumn(0).getInt64());
-    shape.names.push_back(query.getColumn(1).getString());
-    shape.rows = query.getColumn(2).getInt64();
-  }
-  return shape;
+  return history_shape(query);
+}
+
+HistoryShape query_history_shape_of(Connection& db, std::int64_t simulation) {
+  Prepared query(db,
+                 "SELECT id, name, rows FROM history_columns "
+                 "WHERE result = (SELECT result FROM simulations WHERE id = ?) ORDER BY position",
+                 simulation);
+  return history_shape(query);
 }
 
 bool query_history(Connection& db, std::int64_t column, int level, std::int64_t start,
                    std::span<double> values) {
   const auto count = static_cast<std::int64_t>(values.size());
   if (count == 0) return true;
-  const std::int64_t size = level_size(level, rows_of(db, column));
+  // Stays open until the end: while a statement is, the next ones lock the database no further
+  // time.
+  Prepared rows(db, kRowsOfColumn, column);
+  if (!rows.executeStep()) return false;
+  const std::int64_t size = level_size(level, rows.getColumn(0).getInt64());
   if (start + count > size) return false;
   Prepared query(db,
                  "SELECT data, checksum FROM history_blocks WHERE history_column = ? AND level = ? "

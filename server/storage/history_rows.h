@@ -24,6 +24,13 @@ struct HistoryShape {
   std::int64_t rows = 0;              ///< rows of each column
 };
 
+/// A simulation and, if it has succeeded, its result and the columns of its history.
+struct StoredHistory {
+  StoredSimulation simulation;
+  std::string result = {};  ///< as Store::result
+  HistoryShape shape = {};
+};
+
 /// Compresses a column and its pyramid. Uses no database.
 CompressedColumn compress(const StoredColumn& column);
 
@@ -34,7 +41,10 @@ CompressedColumn compress(const StoredColumn& column);
 void insert_history_column(Connection& db, std::int64_t result, std::int64_t position,
                            const CompressedColumn& column);
 
+/// Returns the columns and rows of the history of a result.
 HistoryShape query_history_shape(Connection& db, std::int64_t result);
+/// Returns those of the result of a simulation, none if it has no result.
+HistoryShape query_history_shape_of(Connection& db, std::int64_t simulation);
 
 /// Like Store::read_history.
 bool query_history(Connection& db, std::int64_t column, int level, std::int64_t start,

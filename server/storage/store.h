@@ -269,6 +269,10 @@ class Store {
 
   /// Returns the serialised SimulationResult with the assumptions of this simulation.
   std::optional<std::string> result(std::int64_t id, const CallLimits& limits = {});
+  /// Returns a simulation by its number in the project, with its result and the columns of its
+  /// history if it has succeeded.
+  std::optional<StoredHistory> stored_history(const std::string& project, std::int64_t number,
+                                              const CallLimits& limits = {});
   HistoryShape history_shape(std::int64_t id, const CallLimits& limits = {});
   /// Reads doubles [start, start + values.size()) of a level (pyramid.h) of a column. Returns false
   /// if the column no longer exists.

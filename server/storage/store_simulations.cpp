@@ -202,12 +202,21 @@ std::optional<std::string> Store::result(std::int64_t id, const CallLimits& limi
   return read(limits, [&](Connection& db) { return query_result(db, id); });
 }
 
-HistoryShape Store::history_shape(std::int64_t id, const CallLimits& limits) {
-  return read(limits, [&](Connection& db) {
-    Prepared query(db, "SELECT result FROM simulations WHERE id = ?", id);
-    const bool has_result = query.executeStep() && !query.getColumn(0).isNull();
-    return has_result ? query_history_shape(db, query.getColumn(0).getInt64()) : HistoryShape();
+std::optional<StoredHistory> Store::stored_history(const std::string& project, std::int64_t number,
+                                                   const CallLimits& limits) {
+  return read(limits, [&](Connection& db) -> std::optional<StoredHistory> {
+    auto simulation = query_numbered_simulation(db, project, number);
+    if (!simulation) return std::nullopt;
+    StoredHistory out{*std::move(simulation)};
+    if (out.simulation.state != StoredState::kSucceeded) return out;
+    out.result = query_result(db, out.simulation.id).value_or("");
+    out.shape = query_history_shape_of(db, out.simulation.id);
+    return out;
   });
+}
+
+HistoryShape Store::history_shape(std::int64_t id, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) { return query_history_shape_of(db, id); });
 }
 
 bool Store::read_history(std::int64_t column, int level, std::int64_t start,
