@@ -151,8 +151,9 @@ CallDispatcher::CallDispatcher(Application& application, const TimeLimits& limit
 /// Sets the grant of a call. Returns UNAUTHENTICATED, or PERMISSION_DENIED if the scope of the
 /// grant is too small. Reads nothing of the request and no row.
 std::optional<google::rpc::Status> CallDispatcher::authorize(IncomingCall& call) const {
-  auto grant = application_.authorizer->authenticate(call.credentials, system_time());
-  call.credentials = {};
+  // Moved, so that a long stream keeps no memory of what its client has shown.
+  const Credentials shown = std::move(call.credentials);
+  auto grant = application_.authorizer->authenticate(shown, system_time());
   if (!grant.ok()) {
     call.context.grant = nobody();
     return grant.error();

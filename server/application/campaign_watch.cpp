@@ -25,26 +25,26 @@ class CampaignWatch final : public MessageSource<v1::CampaignEvent> {
  public:
   CampaignWatch(Application& application, const StoredCampaign& campaign, std::int64_t after,
                 const CallContext& call)
-      : application_(application),
+      : store_(application.store),
+        jobs_(application.jobs),
         limits_{.cancelled = call.limits.cancelled},
         campaign_(campaign.id),
         name_(name_of(campaign)),
         told_version_(after) {}
 
   void observe(const std::weak_ptr<Observer>& observer) override {
-    application_.store.observe_campaigns(observer);
-    application_.jobs.wake(observer);
+    store_.observe_campaigns(observer);
+    jobs_.wake(observer);
   }
 
   Step next(v1::CampaignEvent& out) override {
     if (is_over_) return Step::kEnd;
     // A heartbeat also finds changes that nothing announced, such as the removal of an old
     // campaign.
-    const bool is_quiet = Steady::now() - last_message_ >= application_.jobs.heartbeat();
-    if (application_.store.campaign_changes() == seen_changes_ && !is_quiet) return Step::kWait;
-    seen_changes_ = application_.store.campaign_changes();  // before the state is read
-    const auto progress =
-        application_.store.campaign_progress(campaign_, first_missing_row_, limits_);
+    const bool is_quiet = Steady::now() - last_message_ >= jobs_.heartbeat();
+    if (store_.campaign_changes() == seen_changes_ && !is_quiet) return Step::kWait;
+    seen_changes_ = store_.campaign_changes();  // before the state is read
+    const auto progress = store_.campaign_progress(campaign_, first_missing_row_, limits_);
     out.Clear();
     out.set_name(name_);
     if (!progress) {
@@ -66,7 +66,7 @@ class CampaignWatch final : public MessageSource<v1::CampaignEvent> {
 
   bool is_short() const override { return true; }
   bool may_continue() const override {
-    return is_over_ || application_.store.campaign_changes() != seen_changes_;
+    return is_over_ || store_.campaign_changes() != seen_changes_;
   }
 
  private:
@@ -92,7 +92,8 @@ class CampaignWatch final : public MessageSource<v1::CampaignEvent> {
     out.set_version(version);
   }
 
-  Application application_;
+  Store& store_;
+  SimulationJobs& jobs_;
   const CallLimits limits_;  // the end of the stream is its transport's
   const std::int64_t campaign_;
   const std::string name_;

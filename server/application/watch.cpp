@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <deque>
-#include <iterator>
 #include <map>
 #include <utility>
 #include <vector>
@@ -90,7 +88,8 @@ class Watch : public MessageSource<v1::SimulationEvent> {
  public:
   /// Of named simulations: those that may still have events after number `after`.
   Watch(Application& application, Beginning named, std::int64_t after, const CallContext& call)
-      : application_(application),
+      : store_(application.store),
+        jobs_(application.jobs),
         limits_{.cancelled = call.limits.cancelled},
         project_(call.project),
         is_named_(true),
@@ -111,17 +110,17 @@ class Watch : public MessageSource<v1::SimulationEvent> {
   void observe(const std::weak_ptr<Observer>& observer) override {
     observer_ = observer;
     for (const auto& each : std::exchange(channels_, {})) each->observe(observer);
-    if (!is_named_) application_.store.observe(observer);
-    application_.jobs.wake(observer);
+    if (!is_named_) store_.observe(observer);
+    jobs_.wake(observer);
   }
 
   Step next(v1::SimulationEvent& out) override {
     if (is_over()) return Step::kEnd;
     out.Clear();
-    const bool is_quiet = steady_clock::now() - last_message_ >= application_.jobs.heartbeat();
+    const bool is_quiet = steady_clock::now() - last_message_ >= jobs_.heartbeat();
     if (events_.empty()) {
       const std::int64_t before = told_through_;
-      if (may_have_more_ || application_.store.changes() != seen_changes_ || is_quiet) {
+      if (may_have_more_ || store_.changes() != seen_changes_ || is_quiet) {
         read_events(is_quiet);
       }
       if (events_.empty() && may_have_more_ && told_through_ > before) {
@@ -130,8 +129,9 @@ class Watch : public MessageSource<v1::SimulationEvent> {
       }
     }
     if (!events_.empty()) {
-      tell_event(events_.front(), out);
-      events_.pop_front();
+      tell_event(events_.back(), out);
+      events_.pop_back();
+      if (events_.empty()) events_.shrink_to_fit();  // a watch lasts long
       return Step::kMessage;
     }
     if (tell_progress(out)) return Step::kMessage;
@@ -155,10 +155,9 @@ class Watch : public MessageSource<v1::SimulationEvent> {
   /// Reads the next page of events, from memory or, if the memory does not reach back so far or
   /// `is_quiet`, from the database: a heartbeat also finds events on disk that nothing announced.
   void read_events(bool is_quiet) {
-    Store& store = application_.store;
-    seen_changes_ = store.changes();
+    seen_changes_ = store_.changes();
     if (!is_quiet) {
-      auto recent = store.recent_events(project_, told_through_, limits_);
+      auto recent = store_.recent_events(project_, told_through_, limits_);
       if (recent && is_named_) {
         std::erase_if(recent->events, [this](const StoredEvent& each) {
           return watched_.find(each.simulation) == nullptr;
@@ -171,15 +170,15 @@ class Watch : public MessageSource<v1::SimulationEvent> {
     if (is_named_) {
       for (const Watched& each : watched_.all()) query.simulations.push_back(each.id);
     }
-    take(store.events(query, limits_));
+    take(store_.events(query, limits_));
   }
 
   void take(EventPage page) {
     may_have_more_ = page.more;
     if (page.events.empty()) told_through_ = page.through;
     read_through_ = page.through;
-    events_.assign(std::make_move_iterator(page.events.begin()),
-                   std::make_move_iterator(page.events.end()));
+    events_ = std::move(page.events);
+    std::ranges::reverse(events_);
   }
 
   void tell_event(const StoredEvent& event, v1::SimulationEvent& out) {
@@ -216,13 +215,13 @@ class Watch : public MessageSource<v1::SimulationEvent> {
 
   /// Of a named simulation the channel that it had at the beginning is observed already.
   std::shared_ptr<ProgressChannel> find_channel(std::int64_t id) {
-    auto out = application_.jobs.channel(id);
+    auto out = jobs_.channel(id);
     if (out != nullptr && !is_named_) out->observe(observer_);
     return out;
   }
 
   void set_error(std::int64_t id, v1::SimulationEvent& out) {
-    const auto failed = application_.store.simulation(id, limits_);
+    const auto failed = store_.simulation(id, limits_);
     if (!failed) return;
     out.mutable_error()->set_reason(failed->error_reason);
     out.mutable_error()->set_message(failed->error_message);
@@ -289,7 +288,8 @@ class Watch : public MessageSource<v1::SimulationEvent> {
     out.set_event_number(told_through_);
   }
 
-  Application application_;
+  Store& store_;
+  SimulationJobs& jobs_;
   std::shared_ptr<void> place_;  // of a filter, else null
   const CallLimits limits_;      // the end of the stream is its transport's
   const std::string project_;
@@ -299,12 +299,12 @@ class Watch : public MessageSource<v1::SimulationEvent> {
   std::map<std::int64_t, Running> running_;                 // by row; each is in watched_
   std::vector<std::shared_ptr<ProgressChannel>> channels_;  // until observe()
   std::weak_ptr<Observer> observer_;
-  std::deque<StoredEvent> events_;  // read and not told
-  bool may_have_more_ = true;       // there are more events, or none was read yet
-  std::uint64_t seen_changes_ = 0;  // Store::changes() before the last read
-  std::int64_t told_through_;       // all events up to this number were told
-  std::int64_t read_through_ = 0;   // the same once events_ are told
-  std::int64_t last_in_turn_ = 0;   // row of the last simulation whose progress was told
+  std::vector<StoredEvent> events_;  // read and not told, the latest first
+  bool may_have_more_ = true;        // there are more events, or none was read yet
+  std::uint64_t seen_changes_ = 0;   // Store::changes() before the last read
+  std::int64_t told_through_;        // all events up to this number were told
+  std::int64_t read_through_ = 0;    // the same once events_ are told
+  std::int64_t last_in_turn_ = 0;    // row of the last simulation whose progress was told
   steady_clock::time_point last_message_ = steady_clock::now();
 };
 

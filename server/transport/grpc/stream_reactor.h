@@ -62,7 +62,10 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   }
 
   void close(const google::rpc::Status& status) override { machine_.close(status); }
-  void OnWriteDone(bool ok) override { machine_.written(ok); }
+  void OnWriteDone(bool ok) override {
+    bytes_.Clear();
+    machine_.written(ok);
+  }
   void OnCancel() override {
     set_cancelled();
     machine_.close(
