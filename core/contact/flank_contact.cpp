@@ -53,6 +53,13 @@ bool representable(const ContactSolution& s) {
                      s.limiting_stress_area_share});
 }
 
+void set_ratios(const ContactConditions& k, ContactFigures& figures) {
+  figures.friction_coefficient = figures.friction / k.load;
+  const SpecificSliding sliding = specific_sliding(k);
+  figures.specific_sliding_1 = sliding.surface_1;
+  figures.specific_sliding_2 = sliding.surface_2;
+}
+
 std::string celsius(double kelvin) {
   return std::to_string(kelvin - kZeroCelsius) + " degrees Celsius";
 }
@@ -230,14 +237,12 @@ ContactStatus FlankContactModel::heat(const ContactConditions& k,
         laws::oil_rise_per_stress(slide, out.central_film_thickness, oil.thermal_conductivity);
     out.flash_temperature_rise = heated.flash_resistance * out.heat_rate;
   }
-  out.friction_coefficient = out.friction / k.load;
-  out.specific_sliding = specific_sliding(k);
+  set_ratios(k, out);
   return ContactStatus::kOk;
 }
 
 void FlankContactModel::complete(const ContactConditions& k, ContactFigures& figures) const {
-  figures.friction_coefficient = figures.friction / k.load;
-  figures.specific_sliding = specific_sliding(k);
+  set_ratios(k, figures);
   figures.entrainment_speed = std::sqrt(
       laws::entrainment_speed_squared(laws::square(0.5 * (k.velocity_1_x + k.velocity_2_x)),
                                       laws::square(0.5 * (k.velocity_1_y + k.velocity_2_y))));

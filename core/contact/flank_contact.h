@@ -47,9 +47,10 @@ struct ContactFigures {
   double mean_shear_stress = 0;       ///< tau_bar, area mean of eq 23 under the limit [Pa]
   double flash_temperature_rise = 0;  ///< (dT_f)_av, eq 39 [K]
   double friction_coefficient = 0;    ///< F_fr / W [-]
-  SpecificSliding specific_sliding;
-  double entrainment_speed = 0;  ///< U_eff, eq 17 [m/s]
-  double asperity_load = 0;      ///< W_asp, eq 41 [N]
+  double specific_sliding_1 = 0;      ///< see SpecificSliding [-]
+  double specific_sliding_2 = 0;      ///< likewise
+  double entrainment_speed = 0;       ///< U_eff, eq 17 [m/s]
+  double asperity_load = 0;           ///< W_asp, eq 41 [N]
 };
 
 /// Everything about one contact.

@@ -127,8 +127,8 @@ void GearPairSystem::record_derivative(const double* y, const Instant& at,
     dy[kPressureLoadTime] += at.load[k] * c.maximum_pressure;
     dy[kShearRateLoadTime] += at.load[k] * std::min(c.shear_rate, 1e300);
     dy[kFlashLoadTime] += at.load[k] * c.flash_temperature_rise;
-    dy[kPinionSlidingLoadTime] += at.load[k] * std::min(c.specific_sliding.surface_1, 1e300);
-    dy[kGearSlidingLoadTime] += at.load[k] * std::min(c.specific_sliding.surface_2, 1e300);
+    dy[kPinionSlidingLoadTime] += at.load[k] * std::min(c.specific_sliding_1, 1e300);
+    dy[kGearSlidingLoadTime] += at.load[k] * std::min(c.specific_sliding_2, 1e300);
     dy[kLimitedAreaLoadTime] += at.load[k] * c.limiting_stress_area_share;
     limited_centre = limited_centre || c.limiting_stress_at_centre;
   }

@@ -1,6 +1,6 @@
 #include "core/study/history_sampler.h"
 
-#include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace tribodyn {
@@ -13,88 +13,57 @@ double inefficiency(const Torques& torques, const double* y, double loss_power) 
   return torques.pinion != 0 && power > 0 ? 100 * loss_power / power : 0;
 }
 
-double whole_value(HistoryColumn column, double phase, const double* y, const Instant& at,
-                   const Torques& torques) {
-  switch (column) {
-    case HistoryColumn::kTime:
-      return y[kTime];
-    case HistoryColumn::kMeshPhase:
-      return phase;
-    case HistoryColumn::kPinionShaftSpeed:
-      return y[kPinionShaftSpeed];
-    case HistoryColumn::kPinionSpeed:
-      return y[kPinionSpeed];
-    case HistoryColumn::kGearSpeed:
-      return y[kGearSpeed];
-    case HistoryColumn::kWheelSpeed:
-      return y[kWheelSpeed];
-    case HistoryColumn::kDynamicTransmissionError:
-      return at.transmission_error;
-    case HistoryColumn::kDynamicTransmissionErrorVelocity:
-      return at.transmission_velocity;
-    case HistoryColumn::kMeshForce:
-      return at.mesh_force;
-    case HistoryColumn::kPinionShaftTorque:
-      return at.pinion_shaft_torque;
-    case HistoryColumn::kGearShaftTorque:
-      return at.gear_shaft_torque;
-    case HistoryColumn::kPinionFrictionTorque:
-      return at.pinion_friction_torque;
-    case HistoryColumn::kGearFrictionTorque:
-      return at.gear_friction_torque;
-    case HistoryColumn::kMeshLossPower:
-      return at.loss_power;
-    case HistoryColumn::kInefficiency:
-      return inefficiency(torques, y, at.loss_power);
-    default:
-      return 0;
-  }
-}
+/// One sample of the drive.
+struct Sample {
+  double phase;
+  const double* state;
+  const Instant& at;
+  const Torques& torques;
+};
 
-double flank_value(HistoryColumn column, int k, const Instant& at) {
-  const ContactFigures& c = at.contact[k];
-  if (!(at.load[k] > 0)) return 0;
-  switch (column) {
-    case HistoryColumn::kFlankLoad:
-      return at.load[k];
-    case HistoryColumn::kFlankFriction:
-      return c.friction;
-    case HistoryColumn::kFlankViscousFriction:
-      return c.viscous_friction;
-    case HistoryColumn::kFlankBoundaryFriction:
-      return c.boundary_friction;
-    case HistoryColumn::kFlankFilmThickness:
-      return c.central_film_thickness;
-    case HistoryColumn::kFlankFilmRatio:
-      return c.film_ratio;
-    case HistoryColumn::kFlankContactTemperature:
-      return c.contact_temperature;
-    case HistoryColumn::kFlankMaximumPressure:
-      return c.maximum_pressure;
-    case HistoryColumn::kFlankShearRate:
-      return c.shear_rate;
-    case HistoryColumn::kFlankSlidingSpeed:
-      return at.motion[k].sliding_speed;
-    case HistoryColumn::kFlankFrictionCoefficient:
-      return c.friction_coefficient;
-    case HistoryColumn::kFlankFlashTemperatureRise:
-      return c.flash_temperature_rise;
-    case HistoryColumn::kFlankPinionSpecificSliding:
-      return c.specific_sliding.surface_1;
-    case HistoryColumn::kFlankGearSpecificSliding:
-      return c.specific_sliding.surface_2;
-    case HistoryColumn::kFlankEntrainmentSpeed:
-      return c.entrainment_speed;
-    case HistoryColumn::kFlankMeanShearStress:
-      return c.mean_shear_stress;
-    case HistoryColumn::kFlankLimitingStressAreaShare:
-      return c.limiting_stress_area_share;
-    case HistoryColumn::kFlankAsperityLoad:
-      return c.asperity_load;
-    default:
-      return 0;
-  }
-}
+/// The columns of the whole drive, in the order of HistoryColumn.
+constexpr double (*kWholeValues[])(const Sample&) = {
+    [](const Sample& s) { return s.state[kTime]; },
+    [](const Sample& s) { return s.phase; },
+    [](const Sample& s) { return s.state[kPinionShaftSpeed]; },
+    [](const Sample& s) { return s.state[kPinionSpeed]; },
+    [](const Sample& s) { return s.state[kGearSpeed]; },
+    [](const Sample& s) { return s.state[kWheelSpeed]; },
+    [](const Sample& s) { return s.at.transmission_error; },
+    [](const Sample& s) { return s.at.transmission_velocity; },
+    [](const Sample& s) { return s.at.mesh_force; },
+    [](const Sample& s) { return s.at.pinion_shaft_torque; },
+    [](const Sample& s) { return s.at.gear_shaft_torque; },
+    [](const Sample& s) { return s.at.pinion_friction_torque; },
+    [](const Sample& s) { return s.at.gear_friction_torque; },
+    [](const Sample& s) { return s.at.loss_power; },
+    [](const Sample& s) { return inefficiency(s.torques, s.state, s.at.loss_power); },
+};
+constexpr int kFirstFlankColumn = static_cast<int>(HistoryColumn::kFlankLoad);
+static_assert(std::size(kWholeValues) == kFirstFlankColumn);
+
+/// The columns of each flank under load, from kFlankLoad on.
+constexpr double (*kFlankValues[])(const Instant&, int) = {
+    [](const Instant& at, int k) { return at.load[k]; },
+    [](const Instant& at, int k) { return at.contact[k].friction; },
+    [](const Instant& at, int k) { return at.contact[k].viscous_friction; },
+    [](const Instant& at, int k) { return at.contact[k].boundary_friction; },
+    [](const Instant& at, int k) { return at.contact[k].central_film_thickness; },
+    [](const Instant& at, int k) { return at.contact[k].film_ratio; },
+    [](const Instant& at, int k) { return at.contact[k].contact_temperature; },
+    [](const Instant& at, int k) { return at.contact[k].maximum_pressure; },
+    [](const Instant& at, int k) { return at.contact[k].shear_rate; },
+    [](const Instant& at, int k) { return at.motion[k].sliding_speed; },
+    [](const Instant& at, int k) { return at.contact[k].friction_coefficient; },
+    [](const Instant& at, int k) { return at.contact[k].flash_temperature_rise; },
+    [](const Instant& at, int k) { return at.contact[k].specific_sliding_1; },
+    [](const Instant& at, int k) { return at.contact[k].specific_sliding_2; },
+    [](const Instant& at, int k) { return at.contact[k].entrainment_speed; },
+    [](const Instant& at, int k) { return at.contact[k].mean_shear_stress; },
+    [](const Instant& at, int k) { return at.contact[k].limiting_stress_area_share; },
+    [](const Instant& at, int k) { return at.contact[k].asperity_load; },
+};
+static_assert(kFirstFlankColumn + std::size(kFlankValues) == kHistoryColumns);
 
 }  // namespace
 
@@ -119,12 +88,14 @@ void HistorySampler::add(double phase, const double* state, const Instant& at,
                          const Torques& torques) {
   std::size_t slot = 0;
   for (const HistoryColumn column : request_.columns) {
+    const int number = static_cast<int>(column);
     if (is_per_flank(column)) {
       for (int k = 0; k < kFlankPairs; ++k) {
-        history_.values[slot++].push_back(flank_value(column, k, at));
+        const double value = at.load[k] > 0 ? kFlankValues[number - kFirstFlankColumn](at, k) : 0.0;
+        history_.values[slot++].push_back(value);
       }
     } else {
-      history_.values[slot++].push_back(whole_value(column, phase, state, at, torques));
+      history_.values[slot++].push_back(kWholeValues[number]({phase, state, at, torques}));
     }
   }
   ++next_;

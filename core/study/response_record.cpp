@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace tribodyn {
 namespace {
@@ -15,6 +16,28 @@ double vertex(const std::array<double, kCount>& v, std::ptrdiff_t at) {
   const double shift = 0.5 * fall / (v[middle - 1] - 2 * v[middle] + v[middle + 1]);
   return std::abs(shift) < 1 ? v[middle] - 0.25 * fall * shift : v[middle];
 }
+
+/// A figure of contacts whose extremes and load-time weighted mean a result has.
+struct ContactFigure {
+  double ContactFigures::*of_contact;
+  Extremes PointResult::*of_result;
+  int first_integral;  ///< of the record: those that add up to int sum W figure dt
+  int integral_count = 1;
+};
+using Contact = ContactFigures;
+using Result = PointResult;
+constexpr ContactFigure kContactFigures[] = {
+    {&Contact::central_film_thickness, &Result::central_film_thickness, kFilmLoadTime},
+    {&Contact::film_ratio, &Result::film_ratio, kFilmRatioLoadTime},
+    {&Contact::contact_temperature, &Result::contact_temperature, kTemperatureLoadTime},
+    {&Contact::maximum_pressure, &Result::maximum_pressure, kPressureLoadTime},
+    {&Contact::shear_rate, &Result::shear_rate, kShearRateLoadTime},
+    {&Contact::flash_temperature_rise, &Result::flash_temperature_rise, kFlashLoadTime},
+    {&Contact::friction_coefficient, &Result::friction_coefficient, kFlankFrictionTime0,
+     kFlankPairs},
+    {&Contact::specific_sliding_1, &Result::pinion_specific_sliding, kPinionSlidingLoadTime},
+    {&Contact::specific_sliding_2, &Result::gear_specific_sliding, kGearSlidingLoadTime},
+};
 
 }  // namespace
 
@@ -40,32 +63,6 @@ Extremes ResponseRecord::Range::with_mean(double mean) const {
   return low <= high ? Extremes{low, mean, high} : Extremes{0, mean, 0};
 }
 
-double ResponseRecord::value_of(const ContactFigures& contact, ContactFigure figure) {
-  switch (figure) {
-    case kFilm:
-      return contact.central_film_thickness;
-    case kFilmRatio:
-      return contact.film_ratio;
-    case kTemperature:
-      return contact.contact_temperature;
-    case kPressure:
-      return contact.maximum_pressure;
-    case kShearRate:
-      return contact.shear_rate;
-    case kFlash:
-      return contact.flash_temperature_rise;
-    case kFrictionCoefficient:
-      return contact.friction_coefficient;
-    case kPinionSliding:
-      return contact.specific_sliding.surface_1;
-    case kGearSliding:
-      return contact.specific_sliding.surface_2;
-    case kContactFigures:
-      break;
-  }
-  return 0;
-}
-
 template <std::size_t kCount>
 void ResponseRecord::add(std::span<const Instant, kCount> instants) {
   const auto add_to = [&](Range& range, double Mechanics::*member) {
@@ -86,10 +83,11 @@ void ResponseRecord::add_flank(std::span<const Instant, kCount> instants, int k)
       instants.begin(), instants.end(), [&](const Instant& i) { return counts(i, k); }));
   if (counted == 0) return;
   if (counted == kCount) {
-    for (int c = 0; c < kContactFigures; ++c) {
+    for (std::size_t c = 0; c < contact_.size(); ++c) {
       std::array<double, kCount> v;
-      for (std::size_t n = 0; n < kCount; ++n)
-        v[n] = value_of(instants[n].contact[k], static_cast<ContactFigure>(c));
+      for (std::size_t n = 0; n < kCount; ++n) {
+        v[n] = instants[n].contact[k].*kContactFigures[c].of_contact;
+      }
       contact_[c].add(v);
     }
     return;
@@ -97,8 +95,8 @@ void ResponseRecord::add_flank(std::span<const Instant, kCount> instants, int k)
   for (std::size_t n = 0; n < kCount; ++n) {
     const Instant& i = instants[n];
     if (counts(i, k)) {
-      for (int c = 0; c < kContactFigures; ++c) {
-        contact_[c].add(value_of(i.contact[k], static_cast<ContactFigure>(c)));
+      for (std::size_t c = 0; c < contact_.size(); ++c) {
+        contact_[c].add(i.contact[k].*kContactFigures[c].of_contact);
       }
     }
     if (n == 0 || counts(i, k) == counts(instants[n - 1], k)) continue;
@@ -107,9 +105,9 @@ void ResponseRecord::add_flank(std::span<const Instant, kCount> instants, int k)
     if (!(i.load[k] > 0 && before.load[k] > 0)) continue;
     // Film, pressure and temperature go like powers of a small load.
     const double t = std::log(load_floor_ / before.load[k]) / std::log(i.load[k] / before.load[k]);
-    for (int c = 0; c < kContactFigures; ++c) {
-      const double a = value_of(before.contact[k], static_cast<ContactFigure>(c));
-      const double b = value_of(i.contact[k], static_cast<ContactFigure>(c));
+    for (std::size_t c = 0; c < contact_.size(); ++c) {
+      const double a = before.contact[k].*kContactFigures[c].of_contact;
+      const double b = i.contact[k].*kContactFigures[c].of_contact;
       contact_[c].add(a > 0 && b > 0 ? a * std::pow(b / a, t) : a + t * (b - a));
     }
   }
@@ -156,20 +154,14 @@ void ResponseRecord::fill(const Torques& torques, double cycles, bool periodic,
   out.pinion_friction_torque = pinion_friction_.with_mean(y[kPinionFrictionTorqueTime] / time);
   out.gear_friction_torque = gear_friction_.with_mean(y[kGearFrictionTorqueTime] / time);
   if (y[kLoadTime] > 0) {
+    static_assert(std::size(kContactFigures) == std::tuple_size_v<decltype(contact_)>);
     const double load_time = y[kLoadTime];
-    out.central_film_thickness = contact_[kFilm].with_mean(y[kFilmLoadTime] / load_time);
-    out.film_ratio = contact_[kFilmRatio].with_mean(y[kFilmRatioLoadTime] / load_time);
-    out.contact_temperature = contact_[kTemperature].with_mean(y[kTemperatureLoadTime] / load_time);
-    out.maximum_pressure = contact_[kPressure].with_mean(y[kPressureLoadTime] / load_time);
-    out.shear_rate = contact_[kShearRate].with_mean(y[kShearRateLoadTime] / load_time);
-    out.flash_temperature_rise = contact_[kFlash].with_mean(y[kFlashLoadTime] / load_time);
-    double friction_time = 0;
-    for (int k = 0; k < kFlankPairs; ++k) friction_time += y[kFlankFrictionTime0 + k];
-    out.friction_coefficient = contact_[kFrictionCoefficient].with_mean(friction_time / load_time);
-    out.pinion_specific_sliding =
-        contact_[kPinionSliding].with_mean(y[kPinionSlidingLoadTime] / load_time);
-    out.gear_specific_sliding =
-        contact_[kGearSliding].with_mean(y[kGearSlidingLoadTime] / load_time);
+    for (std::size_t c = 0; c < contact_.size(); ++c) {
+      const ContactFigure& figure = kContactFigures[c];
+      double integral = 0;
+      for (int n = 0; n < figure.integral_count; ++n) integral += y[figure.first_integral + n];
+      out.*figure.of_result = contact_[c].with_mean(integral / load_time);
+    }
     out.limiting_stress_area_share = y[kLimitedAreaLoadTime] / load_time;
   }
   out.limiting_stress_time_share = y[kLimitedCentreTime] / time;

@@ -44,20 +44,6 @@ class ResponseRecord {
     /// 0 where nothing was added.
     Extremes with_mean(double mean) const;
   };
-  /// Outputs of contacts that count on loaded flanks only.
-  enum ContactFigure {
-    kFilm,
-    kFilmRatio,
-    kTemperature,
-    kPressure,
-    kShearRate,
-    kFlash,
-    kFrictionCoefficient,
-    kPinionSliding,
-    kGearSliding,
-    kContactFigures
-  };
-  static double value_of(const ContactFigures& contact, ContactFigure figure);
   template <std::size_t kCount>
   void add(std::span<const Instant, kCount> instants);
   template <std::size_t kCount>
@@ -68,7 +54,7 @@ class ResponseRecord {
 
   double load_floor_;
   Range transmission_error_, mesh_force_, pinion_friction_, gear_friction_;
-  std::array<Range, kContactFigures> contact_;
+  std::array<Range, 9> contact_;  // of figures that count on loaded flanks only
 };
 
 }  // namespace tribodyn

@@ -215,8 +215,8 @@ v1::EvaluateContactResponse to_message(const ContactSolution& s) {
   out.set_friction_newtons(s.friction);
   out.set_heat_rate_watts(s.heat_rate);
   out.set_friction_coefficient(s.friction_coefficient);
-  out.set_pinion_specific_sliding(s.specific_sliding.surface_1);
-  out.set_gear_specific_sliding(s.specific_sliding.surface_2);
+  out.set_pinion_specific_sliding(s.specific_sliding_1);
+  out.set_gear_specific_sliding(s.specific_sliding_2);
   out.set_limiting_stress_area_share(s.limiting_stress_area_share);
   out.set_limiting_stress_switches(s.limiting_stress_switches);
   out.set_limiting_stress_at_centre(s.limiting_stress_at_centre);

@@ -58,11 +58,11 @@ TEST(ContactFigures, ThatFollowFromOthersAreThoseOfTheReference) {
     if (s.status != ContactStatus::kOk) continue;
     ContactFigures figures = s;
     figures.friction_coefficient = figures.flash_temperature_rise = -1;
-    figures.specific_sliding = {-1, -1};
+    figures.specific_sliding_1 = figures.specific_sliding_2 = -1;
     model.complete(c.conditions, figures);
     EXPECT_EQ(figures.friction_coefficient, s.friction_coefficient);
-    EXPECT_EQ(figures.specific_sliding.surface_1, s.specific_sliding.surface_1);
-    EXPECT_EQ(figures.specific_sliding.surface_2, s.specific_sliding.surface_2);
+    EXPECT_EQ(figures.specific_sliding_1, s.specific_sliding_1);
+    EXPECT_EQ(figures.specific_sliding_2, s.specific_sliding_2);
     // The root that the reference finds of eq 38 is that good.
     EXPECT_NEAR(figures.flash_temperature_rise, s.flash_temperature_rise,
                 1e-7 * s.contact_temperature);

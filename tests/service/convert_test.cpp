@@ -177,7 +177,8 @@ TEST(FromCore, EveryFieldOfASolvedContactIsConvertedOnce) {
   solution.limiting_stress_switches = 36;
   solution.limiting_stress_at_centre = true;
   solution.thermal_roots = 37;
-  solution.specific_sliding = {42, 43};
+  solution.specific_sliding_1 = 42;
+  solution.specific_sliding_2 = 43;
   const v1::EvaluateContactResponse response = to_message(solution);
   const auto& descriptor = *response.GetDescriptor();
   const auto& reflection = *response.GetReflection();
