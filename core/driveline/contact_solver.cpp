@@ -12,7 +12,9 @@ ContactSolver::ContactSolver(const FlankContactBatch& batch, ContactTally& tally
     : reference_(batch.model()),
       batch_(&batch),
       geometries_(reference_.reduced_modulus(), reference_.options(), kFlankPairs),
-      tally_(tally) {}
+      tally_(tally) {
+  solved_.resize_for_overwrite(kFlankPairs);
+}
 
 ContactStatus ContactSolver::solve(const std::array<ContactConditions, kFlankPairs>& conditions,
                                    std::array<ContactFigures, kFlankPairs>& out) {
@@ -43,45 +45,18 @@ void ContactSolver::solve_together(const std::array<ContactConditions, kFlankPai
     gear_y[k] = c.velocity_2_y;
     if (c.load > 0) geometries_.set(k, c.radius_x, c.radius_y);
   }
-  Column friction, viscous, boundary, temperature, film, ratio, pressure, rate, stress, share,
-      asperities;
-  std::array<bool, kFlankPairs> at_centre;
   std::array<ContactStatus, kFlankPairs> status;
-  FlankContactBatchResults results;
-  results.friction = friction.data();
-  results.viscous_friction = viscous.data();
-  results.boundary_friction = boundary.data();
-  results.contact_temperature = temperature.data();
-  results.central_film_thickness = film.data();
-  results.film_ratio = ratio.data();
-  results.maximum_pressure = pressure.data();
-  results.shear_rate = rate.data();
-  results.mean_shear_stress = stress.data();
-  results.limiting_stress_area_share = share.data();
-  results.asperity_load = asperities.data();
-  results.limiting_stress_at_centre = at_centre.data();
+  FlankContactBatchResults results = solved_.results();
   results.status = status.data();
   batch_->solve(geometries_, 0, kFlankPairs,
                 {load.data(), pinion_x.data(), pinion_y.data(), gear_x.data(), gear_y.data()},
                 results);
   for (int k = 0; k < kFlankPairs; ++k) {
     if (!(load[k] > 0)) continue;
-    ContactFigures& contact = out[k];
-    contact = {};
-    contact.status = status[k];
-    contact.friction = friction[k];
-    contact.viscous_friction = viscous[k];
-    contact.boundary_friction = boundary[k];
-    contact.contact_temperature = temperature[k];
-    contact.central_film_thickness = film[k];
-    contact.film_ratio = ratio[k];
-    contact.maximum_pressure = pressure[k];
-    contact.shear_rate = rate[k];
-    contact.limiting_stress_area_share = share[k];
-    contact.limiting_stress_at_centre = at_centre[k];
-    contact.mean_shear_stress = stress[k];
-    contact.asperity_load = asperities[k];
-    reference_.complete(conditions[k], contact);
+    out[k] = {};
+    solved_.copy(k, out[k]);
+    out[k].status = status[k];
+    reference_.complete(conditions[k], out[k]);
   }
 }
 

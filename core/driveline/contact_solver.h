@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "core/contact/flank_contact_batch.h"
+#include "core/contact/solved_contacts.h"
 #include "core/gear/mesh_data.h"
 
 namespace tribodyn {
@@ -36,6 +36,7 @@ class ContactSolver {
   const FlankContactModel& reference_;
   const FlankContactBatch* batch_;  // null: by the reference
   ContactGeometries geometries_;
+  SolvedContacts solved_;
   ContactTally& tally_;
 };
 

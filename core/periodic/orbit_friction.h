@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/contact/flank_contact_batch.h"
+#include "core/contact/solved_contacts.h"
 #include "core/driveline/frozen_friction.h"
 #include "core/driveline/gear_pair_system.h"
 #include "core/integrate/mesh_grid.h"
@@ -16,26 +17,6 @@
 #include "core/integrate/step_block.h"
 
 namespace tribodyn {
-
-/// The outputs of an orbit's contacts, in the order of its instants and of their flank pairs.
-class SolvedContacts {
- public:
-  /// Discards all outputs; they are 0 afterwards.
-  void resize(std::size_t count);
-  /// Discards all outputs and leaves them uninitialised.
-  void resize_for_overwrite(std::size_t count);
-  /// The arrays into which a batch writes, all but the status.
-  FlankContactBatchResults results();
-  const double* friction() const { return rows_[0]; }
-  void copy(std::size_t i, ContactFigures& to) const;
-  double film_load(std::size_t i) const;                               ///< W_EHL [N]
-  bool by_reference(std::size_t i) const { return by_reference_[i]; }  ///< not by the vector code
-
- private:
-  Columns rows_;
-  std::unique_ptr<bool[]> limiting_stress_at_centre_, by_reference_;
-  std::size_t size_ = 0;
-};
 
 /// Everything at the starts, middles and ends of an orbit's pieces. A piece that continues the one
 /// before shares its end.

@@ -1,0 +1,63 @@
+#include "core/contact/solved_contacts.h"
+
+#include <iterator>
+
+namespace tribodyn {
+namespace {
+
+/// What is kept of the contacts of a response; friction first.
+struct SolvedRow {
+  double* FlankContactBatchResults::*array;
+  double ContactFigures::*member;
+};
+constexpr SolvedRow kSolvedRows[] = {
+    {&FlankContactBatchResults::friction, &ContactFigures::friction},
+    {&FlankContactBatchResults::viscous_friction, &ContactFigures::viscous_friction},
+    {&FlankContactBatchResults::boundary_friction, &ContactFigures::boundary_friction},
+    {&FlankContactBatchResults::contact_temperature, &ContactFigures::contact_temperature},
+    {&FlankContactBatchResults::central_film_thickness, &ContactFigures::central_film_thickness},
+    {&FlankContactBatchResults::film_ratio, &ContactFigures::film_ratio},
+    {&FlankContactBatchResults::maximum_pressure, &ContactFigures::maximum_pressure},
+    {&FlankContactBatchResults::shear_rate, &ContactFigures::shear_rate},
+    {&FlankContactBatchResults::mean_shear_stress, &ContactFigures::mean_shear_stress},
+    {&FlankContactBatchResults::limiting_stress_area_share,
+     &ContactFigures::limiting_stress_area_share},
+    {&FlankContactBatchResults::asperity_load, &ContactFigures::asperity_load}};
+constexpr std::size_t kFilmLoadRow = std::size(kSolvedRows);  // which ContactFigures lack
+
+}  // namespace
+
+void SolvedContacts::resize(std::size_t count) {
+  if (count <= size_) return;
+  rows_.resize(kFilmLoadRow + 1, count);
+  limiting_stress_at_centre_ = std::make_unique<bool[]>(count);
+  by_reference_ = std::make_unique<bool[]>(count);
+  size_ = count;
+}
+
+void SolvedContacts::resize_for_overwrite(std::size_t count) {
+  if (count <= size_) return;
+  rows_.resize_for_overwrite(kFilmLoadRow + 1, count);
+  limiting_stress_at_centre_ = std::make_unique_for_overwrite<bool[]>(count);
+  by_reference_ = std::make_unique_for_overwrite<bool[]>(count);
+  size_ = count;
+}
+
+FlankContactBatchResults SolvedContacts::results() {
+  FlankContactBatchResults out;
+  for (std::size_t r = 0; r < std::size(kSolvedRows); ++r) out.*kSolvedRows[r].array = rows_[r];
+  out.film_load = rows_[kFilmLoadRow];
+  out.limiting_stress_at_centre = limiting_stress_at_centre_.get();
+  out.by_reference = by_reference_.get();
+  return out;
+}
+
+double SolvedContacts::film_load(std::size_t i) const { return rows_[kFilmLoadRow][i]; }
+
+void SolvedContacts::copy(std::size_t i, ContactFigures& to) const {
+  to.status = ContactStatus::kOk;
+  for (std::size_t r = 0; r < std::size(kSolvedRows); ++r) to.*kSolvedRows[r].member = rows_[r][i];
+  to.limiting_stress_at_centre = limiting_stress_at_centre_[i];
+}
+
+}  // namespace tribodyn
