@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <string>
 
+#include "core/celsius.h"
+
 namespace tribodyn {
 
 /// A number for the sentence of a Refusal: six significant digits, so that 1e-13 m2 does not read
@@ -21,6 +23,11 @@ inline std::string number_text(double value, int digits) {
   std::snprintf(text, sizeof text, "%.*e", digits - 1, value);
   std::snprintf(text, sizeof text, "%.10g", std::strtod(text, nullptr));
   return text;
+}
+
+/// "12.5 C" for a temperature [K].
+inline std::string celsius_text(double temperature) {
+  return number_text(temperature - kZeroCelsius) + " C";
 }
 
 /// A number to the second digit of its standard uncertainty: 0.637864 known to 0.0956795 is

@@ -5,9 +5,7 @@
 #include <initializer_list>
 #include <limits>
 #include <numbers>
-#include <string>
 
-#include "core/celsius.h"
 #include "core/contact/contact_equations.h"
 #include "core/contact/thermal_equilibrium.h"
 #include "core/lubricant/viscosity.h"
@@ -60,10 +58,6 @@ void set_ratios(const ContactConditions& k, ContactFigures& figures) {
   figures.specific_sliding_2 = sliding.surface_2;
 }
 
-std::string celsius(double kelvin) {
-  return std::to_string(kelvin - kZeroCelsius) + " degrees Celsius";
-}
-
 }  // namespace
 
 FlankContactModel::FlankContactModel(const Lubricant& lubricant, const SolidPair& solids,
@@ -72,41 +66,22 @@ FlankContactModel::FlankContactModel(const Lubricant& lubricant, const SolidPair
                                      const ModelOptions& options)
     : parameters_{lubricant, solids, roughness, boundary, bath_temperature, inlet_temperature_rise},
       options_(options) {
-  const double vogel = lubricant.vogel_reference_temperature;
-  const auto above_vogel = [&](double temperature, const char* what) {
-    if (temperature > vogel) return;
-    throw Refusal("BELOW_VOGEL_TEMPERATURE",
-                  std::string(what) + " of " + celsius(temperature) +
-                      " is not above the Vogel reference temperature of " + celsius(vogel) +
-                      ": eq 34 has no viscosity there");
-  };
   const double inlet_temperature = bath_temperature + inlet_temperature_rise;
-  above_vogel(inlet_temperature, "an inlet temperature");
+  check_above_vogel(lubricant, inlet_temperature, "an inlet temperature");
   const bool roelands = lubricant.pressure_viscosity_law == PressureViscosityLaw::kRoelands;
-  if (roelands) {
-    above_vogel(lubricant.pressure_viscosity_temperature, "a pressure-viscosity temperature");
-  }
+  const double where_measured = lubricant.pressure_viscosity_temperature;
+  if (roelands) check_above_vogel(lubricant, where_measured, "a pressure-viscosity temperature");
   if (!options.newtonian) {
-    above_vogel(lubricant.rheology_reference_temperature, "a rheology reference temperature");
-    if (!(density(lubricant, lubricant.rheology_reference_temperature) > 0) ||
-        !(density(lubricant, inlet_temperature) > 0)) {
+    const double reference = lubricant.rheology_reference_temperature;
+    check_above_vogel(lubricant, reference, "a rheology reference temperature");
+    if (!(density(lubricant, reference) > 0) || !(density(lubricant, inlet_temperature) > 0)) {
       throw Refusal(
           "DENSITY_NOT_POSITIVE",
           "the density law is not positive at the rheology reference or inlet temperature");
     }
   }
-  if (roelands) {
-    for (const double temperature : {lubricant.pressure_viscosity_temperature, inlet_temperature}) {
-      if (!(roelands_factor(log_ambient_viscosity(lubricant, temperature), options.as_published) >
-            0)) {
-        throw Refusal(
-            "ROELANDS_FACTOR",
-            "ln eta_0 + 9.67 of eq 31 is not positive: the fluid is too thin for the law");
-      }
-    }
-  } else {
-    check_greatest_viscosity(lubricant, inlet_temperature);
-  }
+  if (roelands) check_pressure_growth(lubricant, where_measured, options.as_published);
+  check_pressure_growth(lubricant, inlet_temperature, options.as_published);
   constants_ = contact_constants(parameters_, options, index_from_reciprocal_asymptotic);
 }
 

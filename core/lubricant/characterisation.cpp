@@ -24,10 +24,6 @@ constexpr double kMisfit = 3;                          // standard deviations wo
 using Stated = LubricantParameters<std::optional<KnownParameter>>;
 using Known = LubricantParameters<KnownParameter>;
 
-std::string in_celsius(double temperature) {
-  return number_text(temperature - kZeroCelsius) + " C";
-}
-
 // Gathers a fluid step by step: density, viscosity, then what rests on both.
 class Assembly {
  public:
@@ -152,7 +148,7 @@ class Assembly {
                   "least squares through " + std::to_string(points.size()) + " densities");
       return;
     }
-    set_density(Provenance::kDerived, "density measured at " + in_celsius(coldest->temperature) +
+    set_density(Provenance::kDerived, "density measured at " + celsius_text(coldest->temperature) +
                                           "; expansion by ASTM D1250, lubricating oils");
     warn("EXPANSION_ESTIMATED", "density_temperature_slope",
          "Density is known at one temperature; it changes by " +
@@ -258,7 +254,7 @@ class Assembly {
       warn("VOGEL_REFERENCE_TEMPERATURE_ASSUMED", "vogel_reference_temperature",
            "T_0 cannot be fitted to two viscosities and was set from ASTM D341 to " +
                known_text(fit.reference_temperature, deviation(2)) + " +/- " +
-               number_text(deviation(2), 2) + " K; the viscosity at " + in_celsius(kCold) +
+               number_text(deviation(2), 2) + " K; the viscosity at " + celsius_text(kCold) +
                " is then uncertain by " +
                number_text(100 * relative_viscosity_uncertainty(fit, kCold), 2) +
                " %. Add a viscosity at a low temperature to determine it.");
@@ -285,7 +281,7 @@ class Assembly {
       warn("VISCOSITY_MISFIT", "vogel_viscosity_prefactor",
            "The fitted law is " + number_text(100 * std::abs(off), 3) + " % " +
                (off > 0 ? "above" : "below") + " the viscosity measured at " +
-               in_celsius(point.temperature) + ", more than three times its uncertainty.");
+               celsius_text(point.temperature) + ", more than three times its uncertainty.");
     }
   }
 
@@ -300,8 +296,8 @@ class Assembly {
       return;
     }
     warn("VISCOSITY_EXTRAPOLATED", "vogel_viscosity_prefactor",
-         "Viscosity was measured from " + in_celsius(coldest->point.temperature) + " to " +
-             in_celsius(warmest->point.temperature) +
+         "Viscosity was measured from " + celsius_text(coldest->point.temperature) + " to " +
+             celsius_text(warmest->point.temperature) +
              "; axle oil works from below 40 to above 100 C, where the law extrapolates.");
   }
 
@@ -328,7 +324,7 @@ class Assembly {
       const double rho = density(fluid, temperature);
       if (warm && std::isnormal(viscosity) && viscosity < 1e12 && rho > 0) continue;
       throw Refusal("PARAMETER_OUT_OF_RANGE",
-                    "At " + in_celsius(temperature) + " the laws of viscosity and density give " +
+                    "At " + celsius_text(temperature) + " the laws of viscosity and density give " +
                         (warm ? number_text(viscosity) + " Pa s" : "no viscosity") + " and " +
                         number_text(rho) + " kg/m3.");
     }
@@ -367,7 +363,7 @@ class Assembly {
                               belongs ? "not stated" : "temperature of the estimate"};
     if (belongs) {
       warn("TEMPERATURE_ASSUMED", parameter,
-           std::string(parameter) + " is not stated; " + in_celsius(typical) + " is taken.");
+           std::string(parameter) + " is not stated; " + celsius_text(typical) + " is taken.");
     }
   }
 

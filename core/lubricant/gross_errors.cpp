@@ -23,10 +23,6 @@ std::string per_cent(double ratio) {
   return number_text(100 * std::abs(ratio - 1), 2) + " % " + (ratio > 1 ? "above" : "below");
 }
 
-std::string celsius_text(double temperature) {
-  return number_text(temperature - kZeroCelsius) + " C";
-}
-
 std::string millipascals(double viscosity) { return number_text(1e3 * viscosity) + " mPa s"; }
 
 bool is_table(const MeasuredViscosity& each) {

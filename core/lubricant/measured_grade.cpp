@@ -36,8 +36,8 @@ GearViscosityGrade measured_grade(const FluidMeasurements& fluid, const Characte
     if (!contradicts(gross_error_limit("VISCOSITY_CONTRADICTED"), each.point, law)) {
       cold.push_back(each.point);
     } else {
-      contradictions += " The viscosity at " + number_text(each.point.temperature - kZeroCelsius) +
-                        " C contradicts the law and proves no W grade.";
+      contradictions += " The viscosity at " + celsius_text(each.point.temperature) +
+                        " contradicts the law and proves no W grade.";
     }
   }
   grade = gear_viscosity_grade(viscosity, cold);

@@ -2,11 +2,8 @@
 
 #include <cmath>
 
-#include "core/celsius.h"
 #include "core/laws/laws.h"
 #include "core/lubricant/viscosity.h"
-#include "core/number_text.h"
-#include "core/refusal.h"
 
 namespace tribodyn {
 
@@ -29,19 +26,8 @@ double PressureResponse::factor_at(double temperature) const {
 }
 
 void PressureResponse::check_at(double temperature) const {
-  if (!(temperature > lubricant_.vogel_reference_temperature)) {
-    throw Refusal("BELOW_VOGEL_TEMPERATURE",
-                  "a temperature of " + number_text(temperature - kZeroCelsius) +
-                      " C is not above the Vogel reference temperature of " +
-                      number_text(lubricant_.vogel_reference_temperature - kZeroCelsius) +
-                      " C: eq 34 has no viscosity there");
-  }
-  if (lubricant_.pressure_viscosity_law != PressureViscosityLaw::kRoelands) {
-    check_greatest_viscosity(lubricant_, temperature);
-  } else if (!(factor_at(temperature) > 0)) {
-    throw Refusal("ROELANDS_FACTOR",
-                  "ln eta_0 + 9.67 of eq 31 is not positive: the fluid is too thin for the law");
-  }
+  check_above_vogel(lubricant_, temperature, "a temperature");
+  check_pressure_growth(lubricant_, temperature, as_published_);
 }
 
 double PressureResponse::log_growth(double temperature, double pressure) const {

@@ -65,9 +65,8 @@ DensityLaw density_law(std::span<const DensityPoint> points, BaseOilClass base_o
     const std::string row = " in row " + std::to_string(i + 1);
     check_density(density, row);
     if (!(temperature >= 200 && temperature <= 620)) {
-      throw Refusal("DENSITY_OUT_OF_RANGE", "A temperature of " +
-                                                number_text(temperature - kZeroCelsius) + " C" +
-                                                row + ": it must be from -73.15 to 346.85 C.");
+      throw Refusal("DENSITY_OUT_OF_RANGE", "A temperature of " + celsius_text(temperature) + row +
+                                                ": it must be from -73.15 to 346.85 C.");
     }
     mean_temperature += temperature / static_cast<double>(points.size());
     mean_density += density / static_cast<double>(points.size());

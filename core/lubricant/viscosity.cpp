@@ -3,7 +3,6 @@
 #include <cmath>
 #include <string>
 
-#include "core/celsius.h"
 #include "core/laws/laws.h"
 #include "core/number_text.h"
 #include "core/numerics/bracketed_root.h"
@@ -41,6 +40,25 @@ double index_from_reciprocal_asymptotic(double factor, double coefficient) {
                     " 1/GPa back by eq 33 (ln eta_0 + 9.67 = " + std::to_string(factor) + ")");
 }
 
+void check_above_vogel(const Lubricant& lubricant, double temperature, const char* what) {
+  const double vogel = lubricant.vogel_reference_temperature;
+  if (temperature > vogel) return;
+  throw Refusal("BELOW_VOGEL_TEMPERATURE", std::string(what) + " of " + celsius_text(temperature) +
+                                               " is not above the Vogel reference temperature of " +
+                                               celsius_text(vogel) +
+                                               ": eq 34 has no viscosity there");
+}
+
+void check_pressure_growth(const Lubricant& lubricant, double temperature,
+                           const AsPublished& as_published) {
+  if (lubricant.pressure_viscosity_law != PressureViscosityLaw::kRoelands) {
+    check_greatest_viscosity(lubricant, temperature);
+  } else if (!(roelands_factor(log_ambient_viscosity(lubricant, temperature), as_published) > 0)) {
+    throw Refusal("ROELANDS_FACTOR",
+                  "ln eta_0 + 9.67 of eq 31 is not positive: the fluid is too thin for the law");
+  }
+}
+
 void check_greatest_viscosity(const Lubricant& lubricant, double temperature) {
   constexpr double kLeastFolds = 16;
   const double greatest = laws::log_greatest_viscosity(lubricant);
@@ -48,8 +66,8 @@ void check_greatest_viscosity(const Lubricant& lubricant, double temperature) {
   throw Refusal("PARAMETER_OUT_OF_RANGE",
                 "the pressure-viscosity law is too near its glass transition: the viscosity of " +
                     number_text(ambient_viscosity(lubricant, temperature)) + " Pa s at " +
-                    number_text(temperature - kZeroCelsius) +
-                    " C must be at least e^16 times below the greatest one, " +
+                    celsius_text(temperature) +
+                    " must be at least e^16 times below the greatest one, " +
                     number_text(std::exp(greatest)) + " Pa s");
 }
 

@@ -49,6 +49,15 @@ double log_viscosity_under_pressure(double log_ambient_viscosity, double factor,
 /// Throws Refusal PRESSURE_VISCOSITY_INDEX when no Z in [0.05, 3] does or L is not positive.
 double index_from_reciprocal_asymptotic(double factor, double coefficient);
 
+/// Throws Refusal BELOW_VOGEL_TEMPERATURE if a temperature [K] is not above T_0,ref. `what`: such
+/// as "an inlet temperature".
+void check_above_vogel(const Lubricant& lubricant, double temperature, const char* what);
+
+/// Throws Refusal ROELANDS_FACTOR or PARAMETER_OUT_OF_RANGE (check_greatest_viscosity) if the
+/// pressure-viscosity law does not hold at a temperature [K] above T_0,ref.
+void check_pressure_growth(const Lubricant& lubricant, double temperature,
+                           const AsPublished& as_published);
+
 /// Throws Refusal PARAMETER_OUT_OF_RANGE if the viscosity at a temperature [K] is less than e^16
 /// times below the greatest one of its law, such as that of the glass transition: the growth with
 /// pressure then ends before alpha* has four digits.

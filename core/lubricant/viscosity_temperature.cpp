@@ -22,14 +22,14 @@ double low_viscosity_term(double v) { return std::exp(-1.47 - (1.84 + 0.51 * v) 
 
 double ordinate(const KinematicViscosityPoint& point) {
   if (!(point.temperature >= kLowestTemperature && point.temperature <= kHighestTemperature)) {
-    refuse("A temperature of " + number_text(point.temperature - kZeroCelsius) +
-           " C: it must be from -73.15 to 346.85 C");
+    refuse("A temperature of " + celsius_text(point.temperature) +
+           ": it must be from -73.15 to 346.85 C");
   }
   if (!(point.kinematic_viscosity >= kLowestKinematicViscosity &&
         point.kinematic_viscosity <= kHighestKinematicViscosity)) {
     refuse("A kinematic viscosity of " + number_text(1e6 * point.kinematic_viscosity) +
-           " mm2/s at " + number_text(point.temperature - kZeroCelsius) +
-           " C: the equation is stated for 0.21 to 2e7 mm2/s");
+           " mm2/s at " + celsius_text(point.temperature) +
+           ": the equation is stated for 0.21 to 2e7 mm2/s");
   }
   const double v = 1e6 * point.kinematic_viscosity;
   return std::log10(std::log10(v + 0.7 + low_viscosity_term(v)));
@@ -50,9 +50,9 @@ ViscosityTemperatureLine viscosity_temperature_line(const KinematicViscosityPoin
     const auto& [cold, warm] = first.temperature < second.temperature ? std::pair{first, second}
                                                                       : std::pair{second, first};
     refuse("A kinematic viscosity of " + number_text(1e6 * warm.kinematic_viscosity) +
-           " mm2/s at " + number_text(warm.temperature - kZeroCelsius) +
-           " C must be below that at " + number_text(cold.temperature - kZeroCelsius) + " C, " +
-           number_text(1e6 * cold.kinematic_viscosity) + " mm2/s");
+           " mm2/s at " + celsius_text(warm.temperature) + " must be below that at " +
+           celsius_text(cold.temperature) + ", " + number_text(1e6 * cold.kinematic_viscosity) +
+           " mm2/s");
   }
   return {first.temperature, w1, slope};
 }
@@ -72,8 +72,7 @@ double kinematic_viscosity(const ViscosityTemperatureLine& line, double temperat
   // the margin keeps the points of the line themselves inside
   if (!(1e-6 * v >= kLowestKinematicViscosity * (1 - 1e-9) &&
         1e-6 * v <= kHighestKinematicViscosity * (1 + 1e-9))) {
-    refuse("At " + number_text(temperature - kZeroCelsius) +
-           " C the line leaves the range of 0.21 to 2e7 mm2/s");
+    refuse("At " + celsius_text(temperature) + " the line leaves the range of 0.21 to 2e7 mm2/s");
   }
   return 1e-6 * v;
 }

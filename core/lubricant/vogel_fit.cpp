@@ -25,8 +25,8 @@ constexpr double kSteepest = 0.15;   // |d ln eta/dT| of a cold oil [1/K]
 using Eigen::ArrayXd;
 
 std::string row_text(std::span<const ViscosityPoint> points, std::size_t i) {
-  return "row " + std::to_string(i + 1) + " (" + number_text(points[i].temperature - kZeroCelsius) +
-         " C, " + number_text(1e3 * points[i].viscosity) + " mPa s)";
+  return "row " + std::to_string(i + 1) + " (" + celsius_text(points[i].temperature) + ", " +
+         number_text(1e3 * points[i].viscosity) + " mPa s)";
 }
 
 void check_ranges(std::span<const ViscosityPoint> points) {
