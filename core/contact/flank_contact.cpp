@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -234,41 +235,33 @@ void FlankContactModel::complete(const ContactConditions& k, ContactFigures& fig
 
 namespace {
 
+/// Of each ContactStatus, in its order.
 struct StatusText {
   const char* name;
   const char* sentence;
 };
 
-StatusText text_of(ContactStatus status) {
-  switch (status) {
-    case ContactStatus::kOk:
-      return {"OK", "solved"};
-    case ContactStatus::kNoLoad:
-      return {"NO_LOAD", "no load, no contact: every force is zero"};
-    case ContactStatus::kRefusedNotFinite:
-      return {"NOT_FINITE", "an input of the contact is not a finite number"};
-    case ContactStatus::kRefusedRadius:
-      return {"RADIUS_NOT_POSITIVE", "a radius of curvature is not positive"};
-    case ContactStatus::kRefusedNegativeEntrainment:
-      return {"NEGATIVE_ENTRAINMENT",
-              "eq 17 as published gives a negative entrainment speed for backward entrainment"};
-    case ContactStatus::kRefusedUnboundedShear:
-      return {"UNBOUNDED_SHEAR",
-              "sliding without a film and without a limiting shear stress has no finite stress"};
-    case ContactStatus::kRefusedNoLoadSharing:
-      return {"NO_LOAD_SHARING",
-              "no film load balances asperities and film (eq 41): eqs 43 and 44 as published pull "
-              "where the film ratio is above 2.2, as under the light loads of impacts, and an "
-              "ellipse from the total load can leave no root"};
-    case ContactStatus::kRefusedNoTemperature:
-      return {"NO_CONTACT_TEMPERATURE",
-              "no contact temperature balances heat and conduction while the density law of eq 26 "
-              "is positive"};
-    case ContactStatus::kRefusedOverflow:
-      return {"OVERFLOW", "a law left the range of double precision"};
-  }
-  return {"UNKNOWN", "unknown"};
-}
+constexpr StatusText kStatusTexts[] = {
+    {"OK", "solved"},
+    {"NO_LOAD", "no load, no contact: every force is zero"},
+    {"NOT_FINITE", "an input of the contact is not a finite number"},
+    {"RADIUS_NOT_POSITIVE", "a radius of curvature is not positive"},
+    {"NEGATIVE_ENTRAINMENT",
+     "eq 17 as published gives a negative entrainment speed for backward entrainment"},
+    {"UNBOUNDED_SHEAR",
+     "sliding without a film and without a limiting shear stress has no finite stress"},
+    {"NO_LOAD_SHARING",
+     "no film load balances asperities and film (eq 41): eqs 43 and 44 as published pull where the "
+     "film ratio is above 2.2, as under the light loads of impacts, and an ellipse from the total "
+     "load can leave no root"},
+    {"NO_CONTACT_TEMPERATURE",
+     "no contact temperature balances heat and conduction while the density law of eq 26 is "
+     "positive"},
+    {"OVERFLOW", "a law left the range of double precision"},
+};
+static_assert(std::size(kStatusTexts) == static_cast<int>(ContactStatus::kRefusedOverflow) + 1);
+
+const StatusText& text_of(ContactStatus status) { return kStatusTexts[static_cast<int>(status)]; }
 
 }  // namespace
 

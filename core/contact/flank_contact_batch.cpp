@@ -215,15 +215,8 @@ bool FlankContactBatch::supported(InstructionSet instruction_set) {
 }
 
 const char* FlankContactBatch::name(InstructionSet instruction_set) {
-  switch (instruction_set) {
-    case InstructionSet::kPortable:
-      return "portable";
-    case InstructionSet::kAvx2:
-      return "avx2";
-    case InstructionSet::kAvx512:
-      return "avx512";
-  }
-  return "unknown";
+  static constexpr const char* kNames[] = {"portable", "avx2", "avx512"};
+  return kNames[static_cast<int>(instruction_set)];
 }
 
 namespace {

@@ -1,27 +1,16 @@
 #include "core/lubricant/base_oil.h"
 
+#include <iterator>
+
 namespace tribodyn {
 
 const char* name(BaseOilClass base_oil) {
-  switch (base_oil) {
-    case BaseOilClass::kGroupI:
-      return "group I";
-    case BaseOilClass::kGroupII:
-      return "group II";
-    case BaseOilClass::kGroupIII:
-      return "group III";
-    case BaseOilClass::kPolyalphaolefin:
-      return "polyalphaolefin";
-    case BaseOilClass::kEster:
-      return "ester";
-    case BaseOilClass::kPolyalkyleneGlycol:
-      return "polyalkylene glycol";
-    case BaseOilClass::kNaphthenic:
-      return "naphthenic";
-    case BaseOilClass::kUnspecified:
-      break;
-  }
-  return "unspecified";
+  static constexpr const char* kNames[] = {
+      "unspecified",         "group I",    "group II", "group III", "polyalphaolefin", "ester",
+      "polyalkylene glycol", "naphthenic",
+  };
+  static_assert(std::size(kNames) == kBaseOilClasses);
+  return kNames[static_cast<int>(base_oil)];
 }
 
 }  // namespace tribodyn

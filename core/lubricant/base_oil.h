@@ -13,6 +13,7 @@ enum class BaseOilClass {
   kPolyalkyleneGlycol,  ///< group V
   kNaphthenic,          ///< group V, VI below 80
 };
+inline constexpr int kBaseOilClasses = static_cast<int>(BaseOilClass::kNaphthenic) + 1;
 
 /// "group I", "polyalphaolefin", ...
 const char* name(BaseOilClass base_oil);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/celsius.h"
 #include "core/number_text.h"
@@ -156,31 +157,20 @@ Estimate estimate_havriliak_negami_beta() {
 }
 
 Estimate estimate_density_15(BaseOilClass base_oil) {
-  const auto typical = [&](double density, double uncertainty) {
-    return relative(
-        density, uncertainty,
-        std::string("assumed, typical of ") +
-            (base_oil == BaseOilClass::kUnspecified ? "lubricating oils" : name(base_oil)));
+  struct Typical {
+    double density, relative_uncertainty;
   };
-  switch (base_oil) {
-    case BaseOilClass::kGroupI:
-      return typical(885, 0.03);
-    case BaseOilClass::kGroupII:
-      return typical(870, 0.03);
-    case BaseOilClass::kGroupIII:
-      return typical(850, 0.03);
-    case BaseOilClass::kPolyalphaolefin:
-      return typical(845, 0.03);
-    case BaseOilClass::kEster:
-      return typical(930, 0.03);
-    case BaseOilClass::kPolyalkyleneGlycol:
-      return typical(1020, 0.05);
-    case BaseOilClass::kNaphthenic:
-      return typical(910, 0.03);
-    case BaseOilClass::kUnspecified:
-      break;
-  }
-  return typical(880, 0.05);
+  static constexpr Typical kTypical[] = {
+      // in the order of BaseOilClass
+      {880, 0.05}, {885, 0.03}, {870, 0.03},  {850, 0.03},
+      {845, 0.03}, {930, 0.03}, {1020, 0.05}, {910, 0.03},
+  };
+  static_assert(std::size(kTypical) == kBaseOilClasses);
+  const Typical& typical = kTypical[static_cast<int>(base_oil)];
+  return relative(
+      typical.density, typical.relative_uncertainty,
+      std::string("assumed, typical of ") +
+          (base_oil == BaseOilClass::kUnspecified ? "lubricating oils" : name(base_oil)));
 }
 
 }  // namespace tribodyn

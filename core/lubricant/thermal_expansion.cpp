@@ -22,14 +22,10 @@ void check_density(double density, const std::string& where) {
 }
 
 double slope_uncertainty(BaseOilClass base_oil) {
-  switch (base_oil) {
-    case BaseOilClass::kEster:
-    case BaseOilClass::kPolyalkyleneGlycol:
-    case BaseOilClass::kUnspecified:
-      return 0.15;
-    default:
-      return 0.05;
-  }
+  const bool is_covered = base_oil != BaseOilClass::kEster &&
+                          base_oil != BaseOilClass::kPolyalkyleneGlycol &&
+                          base_oil != BaseOilClass::kUnspecified;
+  return is_covered ? 0.05 : 0.15;
 }
 
 // Chord of ASTM D1250 from 15 to 100 C [kg/(m3 K)].

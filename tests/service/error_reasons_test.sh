@@ -11,8 +11,8 @@ given=$({
   cat $sources | tr '\n' ' ' |
     grep -oE '(Refusal[({]|mark_failed\(id, options_.clock\(\),|mark_lost\(lease.id, lease.attempt, options_.clock\(\),|lose_attempt\(db, id, attempt, now,|back\(|fail\(lease,|set_refusal\(|reason = ) *"[A-Z][A-Z0-9_]*"' |
     grep -oE '"[A-Z][A-Z0-9_]*"' | tr -d '"'
-  sed -n '/^StatusText text_of(ContactStatus/,/^}/p' core/contact/flank_contact.cpp |
-    grep -oE '\{"[A-Z0-9_]+"' | grep -oE '"[A-Z0-9_]+"' | tr -d '"' | grep -vxE 'OK|NO_LOAD|UNKNOWN'
+  sed -n '/^constexpr StatusText kStatusTexts/,/^};/p' core/contact/flank_contact.cpp |
+    grep -oE '\{"[A-Z0-9_]+"' | grep -oE '"[A-Z0-9_]+"' | tr -d '"' | grep -vxE 'OK|NO_LOAD'
   # shellcheck disable=SC2086
   cat $sources | grep -oE 'ERROR_REASON_[A-Z0-9_]+' | sed 's/ERROR_REASON_//'
 } | grep -v '^$' | sort -u)
