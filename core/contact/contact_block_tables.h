@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "core/laws/shear_law.h"
+#include "core/contact/contact_constants.h"
 #include "core/numerics/instruction_set.h"
 #include "core/surface/surface.h"
 
@@ -40,23 +40,16 @@ struct StartFit {
 /// with the growth G = ln eta(p, T) - ln eta_0(T) of the pressure-viscosity law, which is
 /// L ((1 + c p)^Z - 1) for Roelands's, L = ln eta_0(T) + 9.67 and c = 5.1e-9 1/Pa (eq 31): R is
 /// tabulated once for the fluid, so that no quadrature remains in the solve.
-struct ContactBlockTables {
-  double log_film = 0;             ///< see log_film_constant
-  double log_thermal_loading = 0;  ///< see log_thermal_loading of laws
-  double reduced_modulus = 0;      ///< E' [Pa]
-  double inverse_roughness = 0;    ///< 1/sigma_G [1/m]
-  double asperity_load_factor = 0, asperity_area_factor = 0;
-  BoundaryFriction boundary{};  ///< 0: no F_b
+struct ContactBlockTables : ContactConstants<double> {
+  double inverse_roughness = 0;  ///< 1/sigma_G [1/m]
+  BoundaryFriction boundary{};   ///< 0: no F_b
   bool no_boundary_friction = false;
-  double conductance_factor_1 = 0, conductance_factor_2 = 0;
-  double inlet_temperature = 0;
 
   /// False: everything goes to the reference.
   bool covered = false;
   bool inlet_shear_heating = false;
   bool isothermal = false, limited = false;
 
-  ShearLaw<double> shear{};
   double log_limit_at_rim = 0;    ///< ln tau_L0
   double limit_slope = 0;         ///< gamma_L/c [Pa]
   double monotone_factor = 0;     ///< from this L on, ln(tau/tau_L) rises inwards

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/contact/contact_constants.h"
 #include "core/contact/hertz.h"
 #include "core/contact/load_sharing.h"
 #include "core/contact/mean_shear_stress.h"
@@ -43,21 +44,6 @@ struct ContactConditionsOf {
   Real velocity_1_y;  ///< v_s,p [m/s]
   Real velocity_2_x;  ///< u_s,g [m/s]
   Real velocity_2_y;  ///< v_s,g [m/s]
-};
-
-/// What follows from the parameters alone.
-template <class Real>
-struct ContactConstants {
-  Real inlet_temperature;               ///< T_in [K]
-  Real log_inlet_viscosity;             ///< ln eta_0(T_in), Pa s
-  Real pressure_viscosity_coefficient;  ///< alpha*(T_in) [1/Pa]
-  Real reduced_modulus;                 ///< E' [Pa]
-  Real log_film;                        ///< see log_film_constant
-  Real log_thermal_loading;             ///< see log_thermal_loading of laws
-  Real asperity_load_factor;            ///< W_asp/(A_EHL F_5/2) [Pa]
-  Real asperity_area_factor;            ///< A_asp/(A_EHL F_2) [-]
-  Real conductance_factor_1, conductance_factor_2;
-  ShearLaw<Real> shear;
 };
 
 /// index_of(L, alpha*) gives Z by eq 33 at the temperature where alpha* was measured.

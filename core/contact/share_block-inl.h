@@ -74,12 +74,9 @@ HWY_INLINE void heat_inlet(const Tables& t, const ContactBlockInputs& in, Work& 
   store(load(work.film_under_all + i) * factor, work.film_under_all + i);
 }
 
-struct ValueAndSlope {
-  Pack value, slope;
-};
-
 /// P(x) = E(x^2) + x O(x^2), so that the chains of Horner's scheme are half as long.
-HWY_INLINE ValueAndSlope polynomial_and_slope(const std::array<double, kAsperityTerms>& c, Pack x) {
+HWY_INLINE WithSlope<Pack> polynomial_and_slope(const std::array<double, kAsperityTerms>& c,
+                                                Pack x) {
   static_assert(kAsperityTerms % 2 == 0);
   const Pack x2 = x * x;
   Pack odd = c[0], even = c[1], odd_slope = c[0], even_slope = c[1];
@@ -122,7 +119,7 @@ HWY_INLINE bool newton_step_of_share(const Tables& t, Work& work, int i) {
   }
   const Pack film_ratio = least(ratio_all * thinner, kAsperityEnd);
   const Pack v = 1 / (film_ratio + kAsperityShift);
-  const ValueAndSlope p =
+  const WithSlope<Pack> p =
       polynomial_and_slope(t.f5_2, fused(v, t.asperity_scale, t.asperity_offset));
   const Pack gaussian = exponential<kDigits>(-0.5 * square(film_ratio));
   const Pack f5_2 = gaussian * square(v) * v * root(v) * p.value;
