@@ -5,7 +5,6 @@
 #define HWY_TARGET_INCLUDE "core/contact/contact_block.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h.
-#include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
 #include "core/contact/heat_block-inl.h"
@@ -144,12 +143,6 @@ void sample_rises(const Tables& tables, const StartSamples& in, double* rise) {
   }
 }
 
-void exponentials(const double* x, double* y, std::size_t n) {
-  for (std::size_t i = 0; i < n; i += hn::Lanes(kTag)) {
-    hn::Store(hn::Exp(kTag, hn::Load(kTag, x + i)), kTag, y + i);
-  }
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace tribodyn
 HWY_AFTER_NAMESPACE();
@@ -166,10 +159,6 @@ void solve_contact_block(InstructionSet instruction_set, const ContactBlockTable
 void sample_rises(InstructionSet instruction_set, const ContactBlockTables& tables,
                   const StartSamples& samples, double* rise) {
   TRIBODYN_RETURN_WITH(instruction_set, sample_rises, tables, samples, rise)
-}
-
-void vector_exponential(InstructionSet instruction_set, const double* x, double* y, std::size_t n) {
-  TRIBODYN_RETURN_WITH(instruction_set, exponentials, x, y, n)
 }
 
 }  // namespace tribodyn

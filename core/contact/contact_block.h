@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-
 #include "core/contact/contact_block_tables.h"
 #include "core/numerics/digits.h"
 #include "core/numerics/instruction_set.h"
@@ -48,10 +46,5 @@ void sample_rises(InstructionSet instruction_set, const ContactBlockTables& tabl
 
 /// Fits tables.start; see StartFit.
 void fit_start(InstructionSet instruction_set, ContactBlockTables& tables);
-
-/// y = exp(x) for n values, by the library's exponential of that width: the unit of the
-/// benchmarks. n must be a
-/// multiple of 8, the arrays aligned to 64 bytes.
-void vector_exponential(InstructionSet instruction_set, const double* x, double* y, std::size_t n);
 
 }  // namespace tribodyn

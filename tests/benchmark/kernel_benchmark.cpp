@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/contact/contact_block.h"
 #include "core/contact/contact_sensitivity.h"
 #include "tests/benchmark/measurements.h"
+#include "tests/benchmark/vector_exponential.h"
 #include "tests/support/contact_batch.h"
 #include "tests/support/realistic_contacts.h"
 
