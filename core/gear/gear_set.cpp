@@ -90,27 +90,12 @@ void check(const GearSet& set) {
   }
 
   const ToothContactTables& t = set.tables;
-  struct Column {
-    const SlotTable* table;
-    const char* name;
-    bool positive;
-  };
-  const Column columns[] = {{&t.load_share, "load share", false},
-                            {&t.radius_x, "R_zx", true},
-                            {&t.radius_y, "R_zy", true},
-                            {&t.pinion_velocity_x, "A_up", false},
-                            {&t.pinion_velocity_y, "A_vp", false},
-                            {&t.gear_velocity_x, "A_ug", false},
-                            {&t.gear_velocity_y, "A_vg", false},
-                            {&t.contact_point_velocity_x, "contact point velocity x", false},
-                            {&t.contact_point_velocity_y, "contact point velocity y", false},
-                            {&t.pinion_friction_arm, "r_fr,p", false},
-                            {&t.gear_friction_arm, "r_fr,g", false}};
   const std::size_t samples = t.load_share[0].size();
   bool ragged = samples < 2;
-  for (const Column& column : columns) {
+  for (const FlankColumn& column : kFlankColumns) {
+    const SlotTable& table = t.*column.table;
     for (int k = 0; k < kFlankPairs; ++k) {
-      const auto& values = (*column.table)[k];
+      const auto& values = table[k];
       const std::string where = std::string(column.name) + " of slot " + std::to_string(k);
       if (values.size() != samples || samples < 2) {
         wrong += where + " has " + std::to_string(values.size()) + " samples; ";
@@ -123,8 +108,8 @@ void check(const GearSet& set) {
               where + " sample " + std::to_string(j) + " is " + std::to_string(values[j]) + "; ";
         }
       }
-      if (k + 1 < kFlankPairs && (*column.table)[k + 1].size() == samples &&
-          std::abs(values.back() - (*column.table)[k + 1].front()) >
+      if (k + 1 < kFlankPairs && table[k + 1].size() == samples &&
+          std::abs(values.back() - table[k + 1].front()) >
               1e-6 * (1e-3 + std::abs(values.back()))) {
         wrong += where + " does not hand over to the next slot; ";
       }

@@ -45,18 +45,10 @@ MeshData::MeshData(const GearSet& set)
   for (int j = 0; j <= intervals_; ++j) {
     double sum = 0;
     for (int k = 0; k < kFlankPairs; ++k) {
-      samples_[j][k] = {std::max(0.0, t.load_share[k][j]),
-                        t.radius_x[k][j],
-                        t.radius_y[k][j],
-                        t.pinion_velocity_x[k][j],
-                        t.pinion_velocity_y[k][j],
-                        t.gear_velocity_x[k][j],
-                        t.gear_velocity_y[k][j],
-                        t.contact_point_velocity_x[k][j],
-                        t.contact_point_velocity_y[k][j],
-                        t.pinion_friction_arm[k][j],
-                        t.gear_friction_arm[k][j]};
-      sum += samples_[j][k].load_share;
+      FlankKinematics& flank = samples_[j][k];
+      for (const FlankColumn& column : kFlankColumns) flank.*column.value = (t.*column.table)[k][j];
+      flank.load_share = std::max(0.0, flank.load_share);
+      sum += flank.load_share;
     }
     for (FlankKinematics& flank : samples_[j]) flank.load_share /= sum;
   }
@@ -163,12 +155,10 @@ void MeshData::flanks(int interval, double phase,
   const auto& left = samples_[interval];
   const auto& right = samples_[interval + 1];
   for (int k = 0; k < kFlankPairs; ++k) {
-    const auto interpolate = [&](double FlankKinematics::*column) {
-      out[k].*column = left[k].*column + t * (right[k].*column - left[k].*column);
-    };
-    interpolate(&FlankKinematics::radius_x);
-    interpolate(&FlankKinematics::radius_y);
-    for (const auto column : kColumnsButRadii) interpolate(column);
+    for (const FlankColumn& column : kFlankColumns) {
+      const double from = left[k].*column.value;
+      out[k].*column.value = from + t * (right[k].*column.value - from);
+    }
   }
 }
 

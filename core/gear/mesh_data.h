@@ -44,17 +44,30 @@ struct FlankKinematics {
   double pinion_friction_arm, gear_friction_arm;
 };
 
-/// All of them but the radii.
-inline constexpr double FlankKinematics::*kColumnsButRadii[] = {
-    &FlankKinematics::load_share,
-    &FlankKinematics::pinion_velocity_x,
-    &FlankKinematics::pinion_velocity_y,
-    &FlankKinematics::gear_velocity_x,
-    &FlankKinematics::gear_velocity_y,
-    &FlankKinematics::contact_point_velocity_x,
-    &FlankKinematics::contact_point_velocity_y,
-    &FlankKinematics::pinion_friction_arm,
-    &FlankKinematics::gear_friction_arm};
+/// Where a column of the tables is in FlankKinematics, and what refusals call it.
+struct FlankColumn {
+  SlotTable ToothContactTables::*table;
+  double FlankKinematics::*value;
+  const char* name;
+  bool positive = false;
+};
+
+/// All columns, the radii last.
+inline constexpr FlankColumn kFlankColumns[] = {
+    {&ToothContactTables::load_share, &FlankKinematics::load_share, "load share"},
+    {&ToothContactTables::pinion_velocity_x, &FlankKinematics::pinion_velocity_x, "A_up"},
+    {&ToothContactTables::pinion_velocity_y, &FlankKinematics::pinion_velocity_y, "A_vp"},
+    {&ToothContactTables::gear_velocity_x, &FlankKinematics::gear_velocity_x, "A_ug"},
+    {&ToothContactTables::gear_velocity_y, &FlankKinematics::gear_velocity_y, "A_vg"},
+    {&ToothContactTables::contact_point_velocity_x, &FlankKinematics::contact_point_velocity_x,
+     "contact point velocity x"},
+    {&ToothContactTables::contact_point_velocity_y, &FlankKinematics::contact_point_velocity_y,
+     "contact point velocity y"},
+    {&ToothContactTables::pinion_friction_arm, &FlankKinematics::pinion_friction_arm, "r_fr,p"},
+    {&ToothContactTables::gear_friction_arm, &FlankKinematics::gear_friction_arm, "r_fr,g"},
+    {&ToothContactTables::radius_x, &FlankKinematics::radius_x, "R_zx", true},
+    {&ToothContactTables::radius_y, &FlankKinematics::radius_y, "R_zy", true},
+};
 
 /// Sliding and lever arms of one flank pair at given speeds.
 template <class Real>

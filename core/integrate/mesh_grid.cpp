@@ -6,7 +6,7 @@
 namespace tribodyn {
 namespace {
 
-static_assert(std::size(kColumnsButRadii) == kContactRows);
+static_assert(std::size(kFlankColumns) == kContactRows + 2);  // the radii
 
 /// The gear lags by `lag` more or less [rad]. False where there is no series.
 bool set_lane(const MeshData& mesh, const MeshPhase& phase, double lag, int lane,
@@ -89,7 +89,7 @@ void MeshGrid::list(GridContacts& c) const {
   c.geometries.resize(loaded.size());
   for (std::size_t i = 0; i < loaded.size(); ++i) {
     for (int row = 0; row < kContactRows; ++row) {
-      c.kinematics[row][i] = loaded[i]->*kColumnsButRadii[row];
+      c.kinematics[row][i] = loaded[i]->*kFlankColumns[row].value;
     }
     c.geometries.set(i, loaded[i]->radius_x, loaded[i]->radius_y);
   }

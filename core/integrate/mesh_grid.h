@@ -22,7 +22,7 @@ enum MeshRow {
   kMeshRows = kSeriesRow + 2 * MeshExpansion::kTerms
 };
 
-/// Rows of the loaded contacts of a grid, as kColumnsButRadii.
+/// Rows of the loaded contacts of a grid, as kFlankColumns without the radii.
 enum ContactRow {
   kLoadShareRow,
   kPinionVelocityXRow,
