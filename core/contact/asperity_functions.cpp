@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/numerics/chebyshev.h"
+
 namespace tribodyn {
 namespace {
 
@@ -35,18 +37,6 @@ using TaylorSeries = std::array<Extended, kTaylorTerms>;
 
 // Coefficients of the Chebyshev polynomials T_m(x) in powers of x.
 using ChebyshevTable = std::array<TaylorSeries, kTaylorTerms>;
-
-ChebyshevTable chebyshev_polynomials() {
-  ChebyshevTable table{};
-  table[0][0] = 1;
-  table[1][1] = 1;
-  for (int m = 2; m < kTaylorTerms; ++m) {
-    for (int j = 0; j < kTaylorTerms; ++j) {
-      table[m][j] = (j > 0 ? 2 * table[m - 1][j - 1] : 0) - table[m - 2][j];
-    }
-  }
-  return table;
-}
 
 // Lanczos economisation: takes a series in x, |x| <= 1, to kPolynomialTerms by subtracting
 // multiples of T_m from the top down, and returns the coefficients in d = kHalfWidth x.
@@ -115,7 +105,7 @@ Piece make_piece(Extended centre, const Quadrature& rule, const ChebyshevTable& 
 using Table = std::array<Piece, kCentres>;
 
 Table make_table() {
-  const ChebyshevTable chebyshev = chebyshev_polynomials();
+  const ChebyshevTable chebyshev = chebyshev_powers<Extended, kTaylorTerms>();
   const Quadrature rule;
   Table table;
   for (int k = 0; k < kCentres; ++k) {

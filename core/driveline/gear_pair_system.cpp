@@ -18,6 +18,12 @@ GearPairSystem::GearPairSystem(const MeshData& mesh, const DrivelineDynamics& dy
       lag_per_approach_(mesh.gear_teeth() / mesh.mean_gear_contact_radius()),
       cycle_angle_(2 * std::numbers::pi / mesh.pinion_teeth()) {}
 
+double GearPairSystem::mesh_frequency() const {
+  return std::sqrt(mesh_.mean_mesh_stiffness() *
+                   (square(mesh_.mean_pinion_contact_radius()) / dynamics_.pinion_inertia +
+                    square(mesh_.mean_gear_contact_radius()) / dynamics_.gear_inertia));
+}
+
 MeshPhase GearPairSystem::at_phase(double phase) const {
   return mesh_.at_phase(2 * std::numbers::pi * phase);
 }
@@ -161,11 +167,10 @@ void GearPairSystem::to_march(const SectionState& section, double* y) const {
   y[kWheelSpeed] = section.wheel_speed;
   // b + mesh approach + radius_integral(0, mesh approach) = deflection: a contraction by R_g's
   // ripple, 1e-2.
-  const double lag = mesh_.gear_teeth() / mesh_.mean_gear_contact_radius();
   double approach = section.mesh_deflection - dynamics_.half_backlash;
   for (int i = 0; i < 60; ++i) {
     const double next = section.mesh_deflection - dynamics_.half_backlash -
-                        mesh_.functions(0, -lag * approach).radius_integral;
+                        mesh_.functions(0, -lag_per_approach_ * approach).radius_integral;
     const bool done = std::abs(next - approach) <= 1e-20 + 1e-16 * std::abs(approach);
     approach = next;
     if (done) break;
@@ -175,7 +180,6 @@ void GearPairSystem::to_march(const SectionState& section, double* y) const {
 }
 
 SectionState GearPairSystem::to_section(const double* y) const {
-  const double lag = mesh_.gear_teeth() / mesh_.mean_gear_contact_radius();
   return {y[kPinionShaftTwist],
           y[kGearShaftTwist],
           y[kPinionShaftSpeed],
@@ -183,7 +187,7 @@ SectionState GearPairSystem::to_section(const double* y) const {
           y[kGearSpeed],
           y[kWheelSpeed],
           dynamics_.half_backlash + y[kMeshApproach] +
-              mesh_.functions(0, -lag * y[kMeshApproach]).radius_integral};
+              mesh_.functions(0, -lag_per_approach_ * y[kMeshApproach]).radius_integral};
 }
 
 double GearPairSystem::stored_energy(double phase, const ContactRegime& regime,

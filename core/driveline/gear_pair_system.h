@@ -197,6 +197,8 @@ class GearPairSystem {
   /// Mesh phase [cycles].
   MeshPhase at_phase(double phase) const;
 
+  /// Of a vibration of the mesh on its mean stiffness, held by nothing but its rotors [rad/s].
+  double mesh_frequency() const;
   double cycle_angle() const { return cycle_angle_; }  ///< phi_p per mesh cycle, 2 pi/N_p
   void to_march(const SectionState& section, double* state) const;
   SectionState to_section(const double* state) const;

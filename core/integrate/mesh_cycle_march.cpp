@@ -7,14 +7,12 @@ namespace tribodyn {
 MarchScales march_scales(const GearPairSystem& system, const Torques& torques,
                          double mean_pinion_speed) {
   const MeshData& mesh = system.mesh();
-  const DrivelineDynamics& d = system.dynamics();
   const double r_p = mesh.mean_pinion_contact_radius(), r_g = mesh.mean_gear_contact_radius();
   const double ratio = r_p / r_g;
   MarchScales s{};
   s.torque = std::max({std::abs(torques.pinion), ratio * std::abs(torques.wheel), 0.1});
   s.length = s.torque / (r_p * mesh.mean_mesh_stiffness());
-  const double compliance = r_p * r_p / d.pinion_inertia + r_g * r_g / d.gear_inertia;
-  s.speed = s.length * std::sqrt(mesh.mean_mesh_stiffness() * compliance) / r_p;
+  s.speed = s.length * system.mesh_frequency() / r_p;
   s.loss_work = 0.01 * s.torque * system.cycle_angle();
   s.loss_squared = 1e-4 * s.torque * s.torque * system.cycle_angle() / mean_pinion_speed;
   s.time = s.length / (r_p * mean_pinion_speed);

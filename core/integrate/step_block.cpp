@@ -27,35 +27,30 @@ constexpr int kTorque = kStates - 1;  // column of the unknown torque
 
 /// What all lanes share.
 struct Constants {
-  explicit Constants(const StepBlock& block)
-      : pinion_shaft_inertia(1 / block.system.dynamics().pinion_shaft_inertia),
-        pinion_inertia(1 / block.system.dynamics().pinion_inertia),
-        gear_inertia(1 / block.system.dynamics().gear_inertia),
-        wheel_inertia(1 / block.system.dynamics().wheel_inertia),
-        pinion_shaft_stiffness(block.system.dynamics().pinion_shaft_stiffness),
-        pinion_shaft_damping(block.system.dynamics().pinion_shaft_damping),
-        gear_shaft_stiffness(block.system.dynamics().gear_shaft_stiffness),
-        gear_shaft_damping(block.system.dynamics().gear_shaft_damping),
-        mesh_damping(block.system.dynamics().mesh_damping),
-        pinion_torque(block.torques.pinion),
-        wheel_torque(block.torques.wheel),
-        pinion_radius(block.system.mesh().mean_pinion_contact_radius()),
-        gear_radius(block.system.mesh().mean_gear_contact_radius()),
-        lag_per_approach(block.system.mesh().gear_teeth() / gear_radius),
-        backlash((1 - block.side) * block.system.dynamics().half_backlash),
-        cycle_angle(block.system.cycle_angle()),
-        reach(block.grid.series_reach()),
-        side(block.side),
-        energy_consistent(block.system.options().energy_consistent),
-        solve_wheel_torque(block.solve_wheel_torque) {}
-
-  double pinion_shaft_inertia, pinion_inertia, gear_inertia, wheel_inertia;  // inverse
-  double pinion_shaft_stiffness, pinion_shaft_damping, gear_shaft_stiffness, gear_shaft_damping;
-  double mesh_damping, pinion_torque, wheel_torque, pinion_radius, gear_radius;
-  double lag_per_approach;
-  double backlash;  // from x to the deflection of the touching flanks
-  double cycle_angle, reach, side;
-  bool energy_consistent, solve_wheel_torque;
+  const StepBlock& block;
+  const DrivelineDynamics& dynamics = block.system.dynamics();
+  const MeshData& mesh = block.system.mesh();
+  double pinion_shaft_inertia = 1 / dynamics.pinion_shaft_inertia;  // these four inverse
+  double pinion_inertia = 1 / dynamics.pinion_inertia;
+  double gear_inertia = 1 / dynamics.gear_inertia;
+  double wheel_inertia = 1 / dynamics.wheel_inertia;
+  double pinion_shaft_stiffness = dynamics.pinion_shaft_stiffness;
+  double pinion_shaft_damping = dynamics.pinion_shaft_damping;
+  double gear_shaft_stiffness = dynamics.gear_shaft_stiffness;
+  double gear_shaft_damping = dynamics.gear_shaft_damping;
+  double mesh_damping = dynamics.mesh_damping;
+  double pinion_torque = block.torques.pinion;
+  double wheel_torque = block.torques.wheel;
+  double pinion_radius = mesh.mean_pinion_contact_radius();
+  double gear_radius = mesh.mean_gear_contact_radius();
+  double lag_per_approach = mesh.gear_teeth() / gear_radius;
+  // From x to the deflection of the touching flanks.
+  double backlash = (1 - block.side) * dynamics.half_backlash;
+  double cycle_angle = block.system.cycle_angle();
+  double reach = block.grid.series_reach();
+  double side = block.side;
+  bool energy_consistent = block.system.options().energy_consistent;
+  bool solve_wheel_torque = block.solve_wheel_torque;
 };
 
 /// A phase in the lanes from `lane` on.
@@ -235,7 +230,7 @@ HWY_INLINE Row<kSize> add_product(const double* matrix, const double* x, Row<kSi
 
 bool steps_in_lanes(const StepBlock& block, const CycleResponse& response, Columns& end,
                     Columns* derivatives) {
-  const Constants c(block);
+  const Constants c{block};
   const MeshGrid::MeshColumns& mesh = block.grid.mesh_columns(block.side);
   const int steps = block.grid.steps();
   const double h = 1.0 / steps;
@@ -274,7 +269,7 @@ bool steps_in_lanes(const StepBlock& block, const CycleResponse& response, Colum
 }
 
 bool fill_lanes(const StepBlock& block, CycleResponse& response) {
-  const Constants c(block);
+  const Constants c{block};
   const MeshGrid::MeshColumns& mesh = block.grid.mesh_columns(block.side);
   const int steps = block.grid.steps();
   const double h = 1.0 / steps;

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "core/numerics/square.h"
 #include "core/periodic/grid_convergence.h"
 #include "core/periodic/orbit_sensitivity.h"
 #include "core/periodic/orbit_solver.h"
@@ -384,12 +383,7 @@ class GridRefinement {
 }  // namespace
 
 double mesh_oscillations(const GearPairSystem& system, double mean_pinion_speed) {
-  const MeshData& mesh = system.mesh();
-  const DrivelineDynamics& d = system.dynamics();
-  const double compliance = square(mesh.mean_pinion_contact_radius()) / d.pinion_inertia +
-                            square(mesh.mean_gear_contact_radius()) / d.gear_inertia;
-  return std::sqrt(mesh.mean_mesh_stiffness() * compliance) /
-         (mean_pinion_speed * mesh.pinion_teeth());
+  return system.mesh_frequency() / (mean_pinion_speed * system.mesh().pinion_teeth());
 }
 
 bool oscillates_too_often(double mesh_oscillations) {

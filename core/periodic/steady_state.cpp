@@ -11,15 +11,11 @@
 namespace tribodyn {
 namespace {
 
-constexpr int kUnknowns = 8;               // the seven of SectionState and the torque
+constexpr int kUnknowns = 8;               // the seven states from kPinionShaftTwist on, the torque
 constexpr int kWindow = 8;                 // periods that an extrapolation looks back on
 constexpr int kFirstCycles = 8;            // marched before anything is extrapolated
 constexpr double kStabilityMargin = 3e-4;  // finite differences of the march are that good
 using Vector = Eigen::Matrix<double, kUnknowns, 1>;
-
-constexpr int kStateOf[kUnknowns - 1] = {kPinionShaftTwist, kMeshApproach, kGearShaftTwist,
-                                         kPinionShaftSpeed, kPinionSpeed,  kGearSpeed,
-                                         kWheelSpeed};
 
 /// The period map with its corrections, in scaled unknowns.
 class PeriodMap {
@@ -32,20 +28,20 @@ class PeriodMap {
         contacts_(contacts),
         work_(work),
         scales_(march_scales(system_, torques, problem.mean_pinion_speed)) {
-    for (int i = 0; i + 1 < kUnknowns; ++i) scale_(i) = scales_.of(system_.mesh(), kStateOf[i]);
+    for (int i = 0; i + 1 < kUnknowns; ++i) scale_(i) = scales_.of(system_.mesh(), i + 1);
     scale_(kUnknowns - 1) = scales_.torque;
   }
 
   Vector pack(const SectionPoint& at) const {
     Vector v;
-    for (int i = 0; i + 1 < kUnknowns; ++i) v(i) = at.state[kStateOf[i]] / scale_(i);
+    for (int i = 0; i + 1 < kUnknowns; ++i) v(i) = at.state[i + 1] / scale_(i);
     Torques torques = at.torques;
     v(kUnknowns - 1) = problem_.unknown(torques) / scale_(kUnknowns - 1);
     return v;
   }
 
   void unpack(const Vector& v, SectionPoint& at) const {
-    for (int i = 0; i + 1 < kUnknowns; ++i) at.state[kStateOf[i]] = v(i) * scale_(i);
+    for (int i = 0; i + 1 < kUnknowns; ++i) at.state[i + 1] = v(i) * scale_(i);
     problem_.unknown(at.torques) = v(kUnknowns - 1) * scale_(kUnknowns - 1);
     at.regime = system_.regime_of(0, at.state.data());
   }

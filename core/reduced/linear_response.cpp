@@ -90,14 +90,6 @@ struct MeshSides {
   Complex amplification() const { return inverse(1.0 + compliance * mesh); }
 };
 
-/// Of the mesh on its mean stiffness, held by nothing but its rotors [rad/s].
-double mesh_frequency(const GearPairSystem& system) {
-  const DrivelineDynamics& d = system.dynamics();
-  return std::sqrt(system.mesh().mean_mesh_stiffness() *
-                   (square(system.mesh().mean_pinion_contact_radius()) / d.pinion_inertia +
-                    square(system.mesh().mean_gear_contact_radius()) / d.gear_inertia));
-}
-
 /// The c for which c / h^2 covers the highest quarter of the harmonics h.
 double edge_of(const std::vector<Complex>& v) {
   const int count = static_cast<int>(v.size());
@@ -217,7 +209,7 @@ InertialCorrection inertial_correction(const GearPairSystem& system, double mean
   // Beyond the highest: what is asked falls like kinks do, what is answered is known.
   const double asked_approach = edge_of(approach), asked_torque = edge_of(gear_torque),
                asked_pinion_torque = edge_of(pinion_torque);
-  const int last = static_cast<int>(std::min(1.5 * mesh_frequency(system) / first, 1e4));
+  const int last = static_cast<int>(std::min(1.5 * system.mesh_frequency() / first, 1e4));
   for (int h = count + 1; h <= last && motion.tail; ++h) {
     const MeshSides here(system, first * h);
     const double asked = asked_approach +
@@ -233,7 +225,7 @@ bool parametric_resonance_possible(const GearPairSystem& system, double mean_pin
   const int phases = static_cast<int>(stiffness.size());
   const Harmonics harmonics(phases, std::min(phases / 2 - 1, kMostHarmonics));
   const std::vector<Complex> ripple = harmonics.of(stiffness);
-  const double natural = mesh_frequency(system);
+  const double natural = system.mesh_frequency();
   const double mean = system.mesh().mean_mesh_stiffness();
   const double damping = 0.5 * system.dynamics().mesh_damping * natural / mean;  // of critical
   for (int h = 1; h <= harmonics.count(); ++h) {

@@ -8,8 +8,6 @@
 namespace tribodyn {
 namespace {
 
-constexpr int kRangeDigits = 3;  // a sentence says where a range is left, not by how many digits
-
 std::string brief_text(double value) { return number_text(value, kRangeDigits); }
 
 std::string range_text(double low, double high, const char* unit) {

@@ -11,6 +11,9 @@
 
 namespace tribodyn {
 
+/// A sentence says where a range is left, not by how many digits.
+inline constexpr int kRangeDigits = 3;
+
 /// Of the film's temperatures [K]; empty also if the range of the measurements is not known.
 std::string viscosity_sentence(const FluidGrounds& grounds, double inlet_temperature,
                                double hottest_temperature);

@@ -9,10 +9,6 @@
 namespace tribodyn {
 namespace {
 
-constexpr int kDigits = 3;  // a warning says where a range is left, not by how many digits
-
-std::string short_text(double value) { return number_text(value, kDigits); }
-
 /// Largest ratio of the principal radii of flanks that carry load.
 double largest_radius_ratio(const ToothContactTables& tables) {
   double largest = 0;
@@ -43,7 +39,8 @@ std::vector<RangeWarning> range_warnings(const Scene& scene, const PointResult& 
     constexpr double kLargestFitted = 100;
     const double ratio = largest_radius_ratio(scene.gear_set.tables);
     if (ratio > kLargestFitted) {
-      warn("RADIUS_RATIO", "the ratio of a contact's radii reaches " + short_text(ratio) +
+      warn("RADIUS_RATIO", "the ratio of a contact's radii reaches " +
+                               number_text(ratio, kRangeDigits) +
                                "; the fits of eqs 21 and 22 hold from 1 to 100 (exact_hertz has no "
                                "such limit)");
     }
