@@ -38,7 +38,7 @@ void check_counts(const Message& message, const std::string& path, Violations& v
     const int count = reflection.FieldSize(message, field);
     const std::optional<int> maximum = maximum_elements(*field);
     if (maximum && count > *maximum) {
-      violations.push_back({here, too_many_text(count, *maximum)});
+      violations.add(here, too_many_text(count, *maximum));
       continue;
     }
     for (int i = 0; is_message && i < count; ++i) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <fmt/format.h>
 #include <google/protobuf/field_mask.pb.h>
 
 #include <string>
@@ -37,9 +36,8 @@ void take_over_labels(const google::protobuf::FieldMask& mask, const Resource& s
     } else if (paths.Get(i) == "labels") {
       takes_labels = true;
     } else {
-      violations.push_back({"update_mask", fmt::format("\"{}\" cannot be changed; allowed: "
-                                                       "display_name, labels, *",
-                                                       plain_excerpt(paths.Get(i)))});
+      violations.add("update_mask", "\"{}\" cannot be changed; allowed: display_name, labels, *",
+                     plain_excerpt(paths.Get(i)));
       return;
     }
   }
@@ -57,7 +55,7 @@ void take_over_labels(const google::protobuf::FieldMask& mask, const Resource& s
     if (is_of_label || each.field == path + ".display_name") violations.push_back(std::move(each));
   }
   if (target.labels_size() > kMaximumLabels) {
-    violations.push_back({path + ".labels", too_many_text(target.labels_size(), kMaximumLabels)});
+    violations.add(path + ".labels", too_many_text(target.labels_size(), kMaximumLabels));
   } else {
     check_labels(target.labels(), path + ".labels", violations);
   }

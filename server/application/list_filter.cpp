@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -16,6 +15,7 @@
 #include "server/contract/output_only.h"
 #include "server/contract/resource_names.h"
 #include "server/storage/resource_types.h"
+#include "server/support/text.h"
 
 namespace tribodyn::server {
 namespace {
@@ -25,6 +25,15 @@ using google::protobuf::FieldDescriptor;
 using google::protobuf::util::TimeUtil;
 
 constexpr std::string_view kLabels = "labels.";
+/// The operators, each before those that it begins with.
+constexpr std::pair<std::string_view, Comparison> kOperators[] = {
+    {"!=", Comparison::kNotEqual},
+    {"<=", Comparison::kLessOrEqual},
+    {">=", Comparison::kGreaterOrEqual},
+    {"=", Comparison::kEqual},
+    {"<", Comparison::kLess},
+    {">", Comparison::kGreater},
+    {":", Comparison::kContains}};
 
 struct Token {
   std::string text;
@@ -42,14 +51,14 @@ class Scanner {
     return {take([](char c) { return is_word(c); }), false};
   }
 
-  std::string comparison() {
-    for (const std::string_view each : {"!=", "<=", ">=", "=", "<", ">", ":"}) {
-      if (rest_.substr(0, each.size()) != each) continue;
-      rest_.remove_prefix(each.size());
+  std::optional<Comparison> comparison() {
+    for (const auto& [text, comparison] : kOperators) {
+      if (!rest_.starts_with(text)) continue;
+      rest_.remove_prefix(text.size());
       skip_spaces();
-      return std::string(each);
+      return comparison;
     }
-    return {};
+    return std::nullopt;
   }
 
   /// Returns nullopt if the closing quote is missing.
@@ -94,16 +103,6 @@ class Scanner {
   std::string_view rest_;
 };
 
-Comparison comparison_of(const std::string& text) {
-  if (text == "!=") return Comparison::kNotEqual;
-  if (text == "<") return Comparison::kLess;
-  if (text == "<=") return Comparison::kLessOrEqual;
-  if (text == ">") return Comparison::kGreater;
-  if (text == ">=") return Comparison::kGreaterOrEqual;
-  if (text == ":") return Comparison::kContains;
-  return Comparison::kEqual;
-}
-
 std::optional<PropertyKind> kind_of(const std::string& key, const std::string& collection) {
   if (key == "name" || (key.starts_with(kLabels) && key.size() > kLabels.size())) {
     return PropertyKind::kText;
@@ -142,12 +141,6 @@ std::string enum_name_of(std::string word) {
 std::string unknown_field_text(const std::string& key, const std::string& collection) {
   return fmt::format("\"{}\" is not a field of a filter on {}{}", plain_excerpt(key), collection,
                      meant_text(key, filter_fields(collection)));
-}
-
-std::optional<PropertyValue> number_value(const std::string& text) {
-  double value = 0;
-  if (!read_filter_number(text, value)) return std::nullopt;
-  return value;
 }
 
 std::optional<PropertyValue> flag_value(const std::string& text) {
@@ -200,14 +193,14 @@ class ConditionReader {
   }
 
  private:
-  void complain(std::string text) { violations_.push_back({"filter", std::move(text)}); }
+  void complain(std::string text) { violations_.add("filter", std::move(text)); }
 
   /// Returns nullopt, and adds a violation, if the rest of the filter cannot be parsed.
   std::optional<FilterCondition> condition() {
     FilterCondition out;
     out.field = scanner_.field().text;
-    const std::string comparison = scanner_.comparison();
-    if (out.field.empty() || comparison.empty()) {
+    const std::optional<Comparison> comparison = scanner_.comparison();
+    if (out.field.empty() || !comparison) {
       complain("allowed: field, one of = != < <= > >= :, value; e.g. " +
                example_.substr(0, example_.find(" AND ")));
       return std::nullopt;
@@ -218,7 +211,7 @@ class ConditionReader {
                            plain_excerpt(out.field)));
       return std::nullopt;
     }
-    out.comparison = comparison_of(comparison);
+    out.comparison = *comparison;
     out.value = value->text;
     out.is_quoted = value->quoted;
     return out;
@@ -249,7 +242,7 @@ class FilterReader {
   }
 
  private:
-  void complain(std::string text) { violations_.push_back({"filter", std::move(text)}); }
+  void complain(std::string text) { violations_.add("filter", std::move(text)); }
 
   void read_value(const Token& value, Restriction& out) {
     const auto kind = kind_of(out.key, collection_);
@@ -265,7 +258,7 @@ class FilterReader {
       case PropertyKind::kText:
         return read_text(value, out);
       case PropertyKind::kNumber:
-        return set(number_value(value.text), value, "a finite number", out);
+        return set(filter_number(value.text), value, "a finite number", out);
       case PropertyKind::kFlag:
         return set(flag_value(value.text), value, "true or false", out);
       case PropertyKind::kTime:
@@ -316,16 +309,15 @@ class FilterReader {
 
 bool is_too_long(std::string_view filter, Violations& violations) {
   if (filter.size() <= kMaximumFilterLength) return false;
-  violations.push_back({"filter", fmt::format("{} bytes; allowed: at most {}", filter.size(),
-                                              kMaximumFilterLength)});
+  violations.add("filter", "{} bytes; allowed: at most {}", filter.size(), kMaximumFilterLength);
   return true;
 }
 
 }  // namespace
 
-bool read_filter_number(const std::string& text, double& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+std::optional<double> filter_number(std::string_view text) {
+  const auto value = parse_number<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 std::vector<FilterCondition> split_filter(std::string_view filter, const std::string& example,
@@ -354,13 +346,12 @@ std::vector<Restriction> parse_job_filter(std::string_view filter, const std::st
         each.comparison == Comparison::kEqual || each.comparison == Comparison::kNotEqual;
     const bool is_label = each.key.starts_with(kLabels);
     if (each.key == "name") {
-      violations.push_back(
-          {"filter", "lists cannot be filtered by name; use Get" + descriptor.name()});
+      violations.add("filter", "lists cannot be filtered by name; use Get" + descriptor.name());
     } else if (!is_equality && kind_of(each.key, collection) != PropertyKind::kTime &&
                !(is_label && each.comparison == Comparison::kPresent) &&
                !(each.key == "display_name" && each.comparison == Comparison::kContains)) {
-      violations.push_back({"filter", each.key + ": allowed: = or !=, of labels also :*, of "
-                                                 "display_name also :"});
+      violations.add("filter",
+                     each.key + ": allowed: = or !=, of labels also :*, of display_name also :");
     }
     const std::string* word = std::get_if<std::string>(&each.value);
     const FieldDescriptor* field = descriptor.FindFieldByName(each.key);
@@ -384,12 +375,11 @@ Order parse_order(std::string_view order_by, const std::string& collection,
   if (!known) {
     std::vector<std::string> fields = filter_fields(collection);
     std::erase(fields, "labels.KEY");
-    violations.push_back(
-        {"order_by", fmt::format("\"{}\" is nothing to order {} by{}", plain_excerpt(out.key),
-                                 collection, meant_text(out.key, fields))});
+    violations.add("order_by", "\"{}\" is nothing to order {} by{}", plain_excerpt(out.key),
+                   collection, meant_text(out.key, fields));
   }
   if (!scanner.at_end() || (!direction.empty() && direction != "asc" && direction != "desc")) {
-    violations.push_back({"order_by", "allowed: one field, then nothing, asc or desc"});
+    violations.add("order_by", "allowed: one field, then nothing, asc or desc");
   }
   out.descending = direction == "desc";
   out.key = out.key == "name" ? "" : full_key(out.key, collection);

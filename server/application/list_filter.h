@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,8 +39,8 @@ struct FilterCondition {
 std::vector<FilterCondition> split_filter(std::string_view filter, const std::string& example,
                                           Violations& violations);
 
-/// Returns true if the text is a finite number as in C, and sets `value`.
-bool read_filter_number(const std::string& text, double& value);
+/// Returns a finite number as in C; nullopt if the text is none.
+std::optional<double> filter_number(std::string_view text);
 
 struct Order {
   std::string key;  ///< empty: by name

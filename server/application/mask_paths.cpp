@@ -1,7 +1,5 @@
 #include "server/application/mask_paths.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <string_view>
 
@@ -26,7 +24,7 @@ bool names_all(const google::protobuf::FieldMask& mask) {
 bool check_path_count(const google::protobuf::FieldMask& mask, const std::string& mask_field,
                       Violations& violations) {
   if (mask.paths_size() <= kMaximumMaskPaths) return true;
-  violations.push_back({mask_field, too_many_text(mask.paths_size(), kMaximumMaskPaths)});
+  violations.add(mask_field, too_many_text(mask.paths_size(), kMaximumMaskPaths));
   return false;
 }
 
@@ -40,16 +38,14 @@ std::vector<const google::protobuf::FieldDescriptor*> fields_along(
     const std::size_t dot = std::min(rest.find('.'), rest.size());
     const std::string name(rest.substr(0, dot));
     if (holder == nullptr) {
-      violations.push_back(
-          {mask_field, fmt::format("\"{}\": {} is not a message and has no field \"{}\"",
-                                   plain_excerpt(path), out.back()->name(), plain_excerpt(name))});
+      violations.add(mask_field, "\"{}\": {} is not a message and has no field \"{}\"",
+                     plain_excerpt(path), out.back()->name(), plain_excerpt(name));
       return {};
     }
     const auto* field = holder->FindFieldByName(name);
     if (field == nullptr) {
-      violations.push_back(
-          {mask_field, fmt::format("\"{}\" is not a field of {}{}", plain_excerpt(name),
-                                   holder->name(), meant_text(name, names_of_fields(*holder)))});
+      violations.add(mask_field, "\"{}\" is not a field of {}{}", plain_excerpt(name),
+                     holder->name(), meant_text(name, names_of_fields(*holder)));
       return {};
     }
     out.push_back(field);

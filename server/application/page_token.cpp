@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "server/support/sha256.h"
+#include "server/support/text.h"
 
 namespace tribodyn::server {
 namespace {
@@ -50,25 +51,11 @@ std::string text_of(const PropertyValue& value) {
   return "s" + std::get<std::string>(value);
 }
 
-template <class Number>
-std::optional<PropertyValue> parse_number(const std::string& text) {
-  Number value = 0;
-  const auto [end, error] = std::from_chars(text.data() + 1, text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
 std::optional<PropertyValue> parse_value(const std::string& text) {
-  switch (text.empty() ? '\0' : text.front()) {
-    case 't':
-      return parse_number<std::int64_t>(text);
-    case 'n':
-      return parse_number<double>(text);
-    case 's':
-      return text.substr(1);
-    default:
-      return std::nullopt;
-  }
+  if (text.starts_with('t')) return parse_number<std::int64_t>(text.substr(1));
+  if (text.starts_with('n')) return parse_number<double>(text.substr(1));
+  if (text.starts_with('s')) return text.substr(1);
+  return std::nullopt;
 }
 
 }  // namespace
@@ -86,19 +73,12 @@ std::optional<PageToken> parse_page_token(const std::string& key, const std::str
   if (!text || !is_same(token.substr(0, kSealDigits), seal(key, scope, *text))) {
     return std::nullopt;
   }
-  PageToken out;
-  const char* const end_of_text = text->data() + text->size();
-  const auto [end, error] = std::from_chars(text->data(), end_of_text, out.total);
-  if (error != std::errc() || out.total < kNotCounted || end == end_of_text || *end != ' ') {
-    return std::nullopt;
-  }
-  const std::string rest(end + 1, end_of_text);
-  const std::size_t space = rest.find(' ');
-  if (space == std::string::npos) return std::nullopt;
-  auto value = parse_value(rest.substr(space + 1));
-  if (!value) return std::nullopt;
-  out.last = {std::move(*value), rest.substr(0, space)};
-  return out;
+  std::string_view rest = *text;
+  const auto total = parse_number<std::int64_t>(take_part(rest, ' '));
+  std::string name(take_part(rest, ' '));
+  auto value = parse_value(std::string(rest));
+  if (!total || *total < kNotCounted || !value) return std::nullopt;
+  return PageToken{{std::move(*value), std::move(name)}, *total};
 }
 
 }  // namespace tribodyn::server

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -20,8 +18,8 @@ inline constexpr std::size_t kMaximumPageBytes =
 /// violation if it is negative.
 inline int page_size(int requested, int fallback, Violations& violations) {
   if (requested < 0) {
-    violations.push_back({"page_size", fmt::format("page_size = {}; allowed: 0 (means {}) to {}",
-                                                   requested, fallback, kMaximumPageSize)});
+    violations.add("page_size", "page_size = {}; allowed: 0 (means {}) to {}", requested, fallback,
+                   kMaximumPageSize);
   }
   return requested == 0 ? fallback : std::min(requested, kMaximumPageSize);
 }
@@ -34,7 +32,7 @@ inline std::int32_t clamped_total(std::int64_t rows) {
 }
 
 inline void add_bad_page_token(Violations& violations) {
-  violations.push_back({"page_token", "not a token that this server gave out"});
+  violations.add("page_token", "not a token that this server gave out");
 }
 
 }  // namespace tribodyn::server

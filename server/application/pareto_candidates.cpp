@@ -26,7 +26,7 @@ Outcome<v1::FindParetoCandidatesResponse> find_pareto_candidates(
   table.set_weights(request.condition_weights(), violations);
   table.add(request.first(), "first", violations);
   table.add(request.second(), "second", violations);
-  if (!request.has_second()) violations.push_back({"second", "not set"});
+  if (!request.has_second()) violations.add("second", "not set");
   table.add(request.constraints(), violations);
   if (!violations.empty()) return invalid(violations);
   const CandidateSelection selection = table.read_all(request.constraints());

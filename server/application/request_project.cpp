@@ -137,9 +137,8 @@ std::string stated_project(const std::vector<Name>& names, Violations& violation
     if (is_parent(*each.field)) {
       const auto project = project_of_parent(text);
       if (!project) {
-        violations.push_back(
-            {each.path, fmt::format("\"{}\" is not a name of the form \"projects/{{project}}\"{}",
-                                    plain_excerpt(text), kAllowedProjectIds)});
+        violations.add(each.path, "\"{}\" is not a name of the form \"projects/{{project}}\"{}",
+                       plain_excerpt(text), kAllowedProjectIds);
       } else if (!of_parent) {
         of_parent = project;
       }
@@ -164,16 +163,16 @@ std::string take_project(Message& request, Violations& violations) {
     const auto parts = split_name(text);
     if (!parts) {
       if (!is_parent(*each.field)) {
-        violations.push_back({each.path, fmt::format("\"{}\" has no project behind \"projects/\"{}",
-                                                     plain_excerpt(text), kAllowedProjectIds)});
+        violations.add(each.path, "\"{}\" has no project behind \"projects/\"{}",
+                       plain_excerpt(text), kAllowedProjectIds);
       }
       continue;
     }
     if (parts->project != project) {
-      violations.push_back(
-          {each.path, fmt::format("\"{}\" belongs to another project; allowed: names of "
-                                  "projects/{}, which is the project of this request",
-                                  plain_excerpt(text), project)});
+      violations.add(each.path,
+                     "\"{}\" belongs to another project; allowed: names of "
+                     "projects/{}, which is the project of this request",
+                     plain_excerpt(text), project);
     } else if (!is_parent(*each.field)) {
       each.set(std::string(parts->relative));
     }

@@ -50,13 +50,13 @@ std::string new_name(const std::string& id, const std::string& stated, Violation
   const bool has_collection = wrong.starts_with(collection + "/");
   const std::string wrong_id = has_collection ? wrong.substr(collection.size() + 1) : wrong;
   const std::string meant = allowed_id(wrong_id);
-  violations.push_back(
-      {field, wrong.empty() ? field + " is not set; " + allowed
+  violations.add(field, wrong.empty()
+                            ? field + " is not set; " + allowed
                             : fmt::format("\"{}\"; {}, at most {} bytes{}", plain_excerpt(wrong),
                                           allowed, kMaximumTextLength - collection.size() - 1,
                                           meant.empty() || meant == wrong_id
                                               ? ""
-                                              : fmt::format("; did you mean \"{}\"?", meant))});
+                                              : fmt::format("; did you mean \"{}\"?", meant)));
   return {};
 }
 
@@ -115,7 +115,7 @@ void begin_update(Application& application, const Request& request, PendingWrite
   const Resource& stated = Kind<Resource>::of(request);
   const std::string problem = name_problem<Resource>(application, stated.name(), false, call);
   if (!problem.empty()) {
-    write.violations.push_back({join_path(Kind<Resource>::kField, "name"), problem});
+    write.violations.add(join_path(Kind<Resource>::kField, "name"), problem);
     return;
   }
   write.name = stated.name();
@@ -153,7 +153,7 @@ PendingWrite<Resource> begin_write(Application& application, const Request& requ
                                    const CallContext& call) {
   PendingWrite<Resource> write;
   if (!Kind<Resource>::is_in(request)) {
-    write.violations.push_back({Kind<Resource>::kField, "not set"});
+    write.violations.add(Kind<Resource>::kField, "not set");
   } else if constexpr (requires { request.update_mask(); }) {
     begin_update(application, request, write, call);
   } else {
@@ -228,9 +228,8 @@ std::map<std::string, std::size_t> places_of(std::vector<PendingWrite<Resource>>
     if (!writes[i].stated || name.empty()) continue;
     const auto [first, is_new] = places.emplace(name, i);
     if (is_new) continue;
-    writes[i].violations.push_back(
-        {join_path(Kind<Resource>::kField, "name"),
-         fmt::format("{} stands in requests[{}] too; allowed: once", name, first->second)});
+    writes[i].violations.add(join_path(Kind<Resource>::kField, "name"),
+                             "{} stands in requests[{}] too; allowed: once", name, first->second);
   }
   return places;
 }
@@ -266,12 +265,12 @@ std::optional<google::rpc::Status> refusal_of(const std::vector<PendingWrite<Res
   for (std::size_t i = 0; i < writes.size() && violations.size() < kMaximumBatchViolations; ++i) {
     const std::string path = fmt::format("requests[{}]", i);
     for (const Violation& each : writes[i].violations) {
-      violations.push_back({join_path(path, each.field), each.description});
+      violations.add(join_path(path, each.field), each.description);
       all_refusals = false;
     }
     if (!writes[i].refusal) continue;
     if (first == nullptr) first = &*writes[i].refusal;
-    violations.push_back({join_path(path, writes[i].refused_field), writes[i].refusal->message()});
+    violations.add(join_path(path, writes[i].refused_field), writes[i].refusal->message());
   }
   if (violations.empty()) return std::nullopt;
   return all_refusals ? with_violations(*first, violations) : invalid(violations);
@@ -289,8 +288,7 @@ std::vector<PendingWrite<Resource>> begin_writes(Application& application, const
     PendingWrite<Resource>& write =
         writes.emplace_back(begin_write<Resource>(application, request, call));
     if (request.validate_only() && !batch.validate_only()) {
-      write.violations.push_back(
-          {"validate_only", "set for one of a batch; allowed: for the whole batch"});
+      write.violations.add("validate_only", "set for one of a batch; allowed: for the whole batch");
     }
     if (write.is_bad() && ++bad >= kMaximumBatchViolations) return writes;
   }

@@ -127,7 +127,7 @@ std::vector<RowCondition> read_row_filter(const std::string& filter, TableColumn
                                           Violations& violations) {
   std::vector<RowCondition> out;
   const auto complain = [&violations](std::string text) {
-    violations.push_back({"filter", std::move(text)});
+    violations.add("filter", std::move(text));
   };
   for (const FilterCondition& each :
        split_filter(filter, "refusal_number = 0 AND film_ratio_minimum < 1", violations)) {
@@ -141,7 +141,7 @@ std::vector<RowCondition> read_row_filter(const std::string& filter, TableColumn
       continue;
     }
     auto column = columns.find(each.field);
-    double value = 0;
+    const std::optional<double> value = filter_number(each.value);
     if (!column) {
       std::vector<std::string> known = columns.names();
       for (const auto& attribute : columns.table().candidate_attributes()) {
@@ -151,11 +151,11 @@ std::vector<RowCondition> read_row_filter(const std::string& filter, TableColumn
                            meant_text(each.field, known)));
     } else if (each.comparison == kContains) {
       complain(fmt::format("{}: allowed: = != < <= > >=", each.field));
-    } else if (!read_filter_number(each.value, value)) {
+    } else if (!value) {
       complain(fmt::format("{} = \"{}\"; allowed: a finite number", each.field,
                            plain_excerpt(each.value)));
     } else {
-      out.push_back({std::move(*column), each.comparison, value});
+      out.push_back({std::move(*column), each.comparison, *value});
     }
   }
   return out;

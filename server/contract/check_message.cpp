@@ -27,22 +27,20 @@ struct FieldCheck {
 };
 
 void check_number(const FieldCheck& check, double value) {
-  const Constraint* row =
-      find_constraint(check.field.containing_type()->name(), check.field.name());
+  const Constraint* row = find_constraint(check.field);
   if (row == nullptr) {
     if (!std::isfinite(value)) {
-      check.violations.push_back(
-          {check.path, fmt::format("{} = {}; must be finite", check.field.name(), value)});
+      check.violations.add(check.path, "{} = {}; must be finite", check.field.name(), value);
     }
     return;
   }
   if (value == 0 && row->zero == Zero::kUnset && !check.field.has_presence()) return;
-  if (value >= row->minimum && value <= row->maximum) return;  // false for NaN
+  if (row->allows(value)) return;
   std::string text = out_of_range_text(*row, value);
   if (value == 0 && !check.field.has_presence() && !check.field.is_repeated()) {
     text += "; 0 also means not set";
   }
-  check.violations.push_back({check.path, std::move(text)});
+  check.violations.add(check.path, std::move(text));
 }
 
 /// A value of an enum that the contract had once, and what to use instead.
@@ -62,17 +60,15 @@ void check_enum(const FieldCheck& check, int value) {
   if (check.field.enum_type()->FindValueByNumber(value) != nullptr) return;
   for (const RemovedValue& removed : kRemovedValues) {
     if (check.field.enum_type()->name() != removed.type || value != removed.number) continue;
-    check.violations.push_back(
-        {check.path, fmt::format("{} = {} ({}) was removed; {}", check.field.name(), value,
-                                 removed.name, removed.instead)});
+    check.violations.add(check.path, "{} = {} ({}) was removed; {}", check.field.name(), value,
+                         removed.name, removed.instead);
     return;
   }
   std::string names;
   for (int i = 0; i < check.field.enum_type()->value_count(); ++i) {
     names += (i == 0 ? "" : ", ") + check.field.enum_type()->value(i)->name();
   }
-  check.violations.push_back(
-      {check.path, fmt::format("{} = {}; allowed: {}", check.field.name(), value, names)});
+  check.violations.add(check.path, "{} = {}; allowed: {}", check.field.name(), value, names);
 }
 
 void check_text(const FieldCheck& check, const std::string& value) {
@@ -81,8 +77,8 @@ void check_text(const FieldCheck& check, const std::string& value) {
   const int longest = options.HasExtension(v1::max_bytes) ? options.GetExtension(v1::max_bytes)
                                                           : kMaximumTextLength;
   if (value.size() <= static_cast<std::size_t>(longest)) return;
-  check.violations.push_back({check.path, fmt::format("{} has {} bytes; allowed: at most {}", name,
-                                                      value.size(), longest)});
+  check.violations.add(check.path, "{} has {} bytes; allowed: at most {}", name, value.size(),
+                       longest);
 }
 
 /// Returns true for alpha* and its temperature in a lubricant with a pressure-viscosity law, which
@@ -97,10 +93,9 @@ bool is_determined(const Message& message, const FieldDescriptor& field) {
 
 /// Adds a violation if an unset field is required.
 void check_missing(const Message& message, const FieldCheck& check) {
-  const Constraint* row =
-      find_constraint(check.field.containing_type()->name(), check.field.name());
+  const Constraint* row = find_constraint(check.field);
   if (row == nullptr || !is_required(*row) || is_determined(message, check.field)) return;
-  check.violations.push_back({check.path, not_set_text(*row)});
+  check.violations.add(check.path, not_set_text(*row));
 }
 
 /// Returns true for the tables of a gear set, which gear_set_checks.h checks by row and column.
@@ -110,34 +105,28 @@ bool is_table(const FieldDescriptor& field) {
   return type == "MeshSeries" || type == "FlankSlot" || type == "LoadShareAtTorque";
 }
 
-void check_singular(const Message& message, const Reflection& reflection, const FieldCheck& check) {
-  switch (check.field.cpp_type()) {
+/// Checks the value of a field or, if the field is a list, its element `index`.
+void check_value(const Message& message, const FieldCheck& check, int index = 0) {
+  const Reflection& reflection = *message.GetReflection();
+  const FieldDescriptor* field = &check.field;
+  const bool is_list = field->is_repeated();
+  switch (field->cpp_type()) {
     case FieldDescriptor::CPPTYPE_DOUBLE:
-      return check_number(check, reflection.GetDouble(message, &check.field));
+      return check_number(check, is_list ? reflection.GetRepeatedDouble(message, field, index)
+                                         : reflection.GetDouble(message, field));
     case FieldDescriptor::CPPTYPE_INT32:
-      return check_number(check, reflection.GetInt32(message, &check.field));
-    case FieldDescriptor::CPPTYPE_ENUM:
-      return check_enum(check, reflection.GetEnumValue(message, &check.field));
-    case FieldDescriptor::CPPTYPE_STRING:
-      return check_text(check, reflection.GetString(message, &check.field));
-    case FieldDescriptor::CPPTYPE_MESSAGE:
-      return check_message(reflection.GetMessage(message, &check.field), check.path,
-                           check.violations, check.missing);
-    default:
+      if (!is_list) check_number(check, reflection.GetInt32(message, field));
       return;
-  }
-}
-
-void check_element(const Message& message, const Reflection& reflection, int index,
-                   const FieldCheck& check) {
-  switch (check.field.cpp_type()) {
-    case FieldDescriptor::CPPTYPE_DOUBLE:
-      return check_number(check, reflection.GetRepeatedDouble(message, &check.field, index));
+    case FieldDescriptor::CPPTYPE_ENUM:
+      if (!is_list) check_enum(check, reflection.GetEnumValue(message, field));
+      return;
     case FieldDescriptor::CPPTYPE_STRING:
-      return check_text(check, reflection.GetRepeatedString(message, &check.field, index));
+      return check_text(check, is_list ? reflection.GetRepeatedString(message, field, index)
+                                       : reflection.GetString(message, field));
     case FieldDescriptor::CPPTYPE_MESSAGE:
-      return check_message(reflection.GetRepeatedMessage(message, &check.field, index), check.path,
-                           check.violations, check.missing);
+      return check_message(is_list ? reflection.GetRepeatedMessage(message, field, index)
+                                   : reflection.GetMessage(message, field),
+                           check.path, check.violations, check.missing);
     default:
       return;
   }
@@ -148,10 +137,10 @@ void check_element(const Message& message, const Reflection& reflection, int ind
 bool are_valid_numbers(const Message& message, const Reflection& reflection,
                        const FieldDescriptor& field) {
   if (field.cpp_type() != FieldDescriptor::CPPTYPE_DOUBLE) return false;
-  const Constraint* row = find_constraint(field.containing_type()->name(), field.name());
+  const Constraint* row = find_constraint(field);
   const auto& values = reflection.GetRepeatedFieldRef<double>(message, &field);
   return std::all_of(values.begin(), values.end(), [row](double value) {
-    return row == nullptr ? std::isfinite(value) : value >= row->minimum && value <= row->maximum;
+    return row == nullptr ? std::isfinite(value) : row->allows(value);
   });
 }
 
@@ -164,15 +153,13 @@ void check_repeated(const Message& message, const Reflection& reflection, const 
   const int count = reflection.FieldSize(message, &field);
   Violations found;
   for (int i = 0; i < count; ++i) {
-    check_element(message, reflection, i,
-                  {field, fmt::format("{}[{}]", path, i), found, check.missing});
+    check_value(message, {field, fmt::format("{}[{}]", path, i), found, check.missing}, i);
   }
   const std::size_t reported =
       std::min(found.size(), static_cast<std::size_t>(kMaximumReportedElements));
   for (std::size_t i = 0; i < reported; ++i) violations.push_back(found[i]);
   if (found.size() > reported) {
-    violations.push_back(
-        {path, fmt::format("{} more of its elements are invalid", found.size() - reported)});
+    violations.add(path, "{} more of its elements are invalid", found.size() - reported);
   }
 }
 
@@ -229,7 +216,7 @@ void check_message(const Message& message, const std::string& path, Violations& 
     if (field.is_repeated()) {
       check_repeated(message, reflection, check);
     } else if (!field.has_presence() || reflection.HasField(message, &field)) {
-      check_singular(message, reflection, check);
+      check_value(message, check);
     } else if (missing == Missing::kViolation) {
       check_missing(message, check);
     }
@@ -240,8 +227,8 @@ void check_size(const Message& request, const std::string& list, Violations& vio
   const auto& descriptor = *request.GetDescriptor();
   const int size = request.GetReflection()->FieldSize(request, descriptor.FindFieldByName(list));
   const Constraint& row = *find_constraint(descriptor.name(), list);
-  if (size >= row.minimum && size <= row.maximum) return;
-  violations.push_back({list, out_of_range_text(row, size)});
+  if (row.allows(size)) return;
+  violations.add(list, out_of_range_text(row, size));
 }
 
 void check_choice(const Message& request, const std::string& field, Violations& violations) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <google/protobuf/descriptor.h>
+
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,9 +22,12 @@ struct Constraint {
   std::string_view unit;     ///< symbol in messages, e.g. "s"; empty for a pure number
   double minimum;            ///< for a list of messages: the smallest number of elements
   double maximum;
-  std::string_view equation;  ///< equation of the paper, with the symbol of the quantity
-  std::string_view reason;    ///< why a value outside the range is refused; may be empty
+  std::string_view equation;     ///< equation of the paper, with the symbol of the quantity
+  std::string_view reason = {};  ///< why a value outside the range is refused; may be empty
   Zero zero = Zero::kValue;
+
+  /// Returns true if the value is in the range; false for NaN.
+  bool allows(double value) const { return value >= minimum && value <= maximum; }
 };
 
 /// Returns all rows, grouped by message.
@@ -34,6 +39,7 @@ bool is_required(const Constraint& row);
 
 /// Returns the row of a field, or null if the table has none.
 const Constraint* find_constraint(std::string_view message, std::string_view field);
+const Constraint* find_constraint(const google::protobuf::FieldDescriptor& field);
 
 /// Returns the shortest text from which the same number can be read.
 std::string number_text(double value);

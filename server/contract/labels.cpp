@@ -25,10 +25,10 @@ void check_labels(const Labels& labels, const std::string& path, Violations& vio
     const std::string& key = labels.Get(i).key();
     const std::string here = fmt::format("{}[{}].key", path, i);
     if (!is_key(key)) {
-      violations.push_back({here, fmt::format("\"{}\"; allowed: letters, digits, '-', '_' and '.'",
-                                              plain_excerpt(key))});
+      violations.add(here, "\"{}\"; allowed: letters, digits, '-', '_' and '.'",
+                     plain_excerpt(key));
     } else if (!keys.insert(key).second) {
-      violations.push_back({here, fmt::format("\"{}\" is named twice", key)});
+      violations.add(here, "\"{}\" is named twice", key);
     }
   }
 }

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <numeric>
 
 #include "server/contract/constraints.h"
+#include "server/support/text.h"
 
 namespace tribodyn::server {
 namespace {
@@ -43,13 +43,8 @@ std::string_view id_of(std::string_view name) { return name.substr(name.find('/'
 /// Returns the number in "collection/{id}", or nullopt if `name` has another form.
 std::optional<std::int64_t> number_in(std::string_view name, std::string_view collection) {
   if (!is_resource_name(name, collection)) return std::nullopt;
-  const std::string_view digits = name.substr(collection.size() + 1);
-  std::int64_t number = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  if (error != std::errc() || end != digits.data() + digits.size() || number <= 0) {
-    return std::nullopt;
-  }
-  return number;
+  const auto number = parse_number<std::int64_t>(name.substr(collection.size() + 1));
+  return number && *number > 0 ? number : std::nullopt;
 }
 
 }  // namespace
@@ -127,11 +122,9 @@ std::optional<RevisionName> parse_revision_name(std::string_view name,
   RevisionName out{std::string(name.substr(0, at)), 0};
   if (at == std::string_view::npos) return out;
   const std::string_view digits = name.substr(at + 1);
-  const auto [end, error] =
-      std::from_chars(digits.data(), digits.data() + digits.size(), out.revision);
+  out.revision = parse_number<int>(digits).value_or(0);
   const bool is_canonical = std::to_string(out.revision) == digits;
-  if (error != std::errc() || !is_canonical || out.revision < 1) return std::nullopt;
-  return out;
+  return is_canonical && out.revision >= 1 ? std::optional(out) : std::nullopt;
 }
 
 std::string revision_name(std::string_view name, int revision) {

@@ -165,7 +165,7 @@ std::optional<NamedResource<Resource>> find_resource(const ResourceLookup& looku
     if (const auto found = lookup.find(*parsed)) {
       NamedResource<Resource> out;
       if (found->is_deleted) {
-        violations.push_back({path, deleted_name_text(parsed->name)});
+        violations.add(path, deleted_name_text(parsed->name));
         return std::nullopt;
       }
       out.revision_name = revision_name(parsed->name, found->revision);
@@ -173,7 +173,7 @@ std::optional<NamedResource<Resource>> find_resource(const ResourceLookup& looku
       if (out.resource) return out;
     }
   }
-  violations.push_back({path, unknown_name_text(name, collection, lookup.names(collection))});
+  violations.add(path, unknown_name_text(name, collection, lookup.names(collection)));
   return std::nullopt;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstddef>
 #include <initializer_list>
 #include <string>
@@ -35,6 +37,16 @@ class Violations {
   void push_back(Violation violation) {
     if (kept_.size() < kMostKept) kept_.push_back(std::move(violation));
     ++size_;
+  }
+  void add(std::string field, std::string description) {
+    push_back({std::move(field), std::move(description)});
+  }
+  /// Adds a violation whose description is fmt::format(format, first, others...).
+  template <class First, class... Others>
+  void add(std::string field, fmt::format_string<First, Others...> format, First&& first,
+           Others&&... others) {
+    add(std::move(field),
+        fmt::format(format, std::forward<First>(first), std::forward<Others>(others)...));
   }
   /// Adds the kept violations of `others`, and the number of those that it did not keep.
   void append(const Violations& others) {

@@ -114,10 +114,9 @@ void add_token_commands(CLI::App& app, Settings& settings) {
       ->check(between(0.0001, 1e6));
   add("list", "Print all tokens, also expired and revoked ones, without their secrets");
   add_name(add("revoke", "Refuse every token of NAME from now on, and end its streams"));
-  CLI::App* rotate = add(
-      "rotate",
-      "Print a new token in place of that of NAME, with the same scope and projects. The owner's "
-      "goes to DATABASE.token");
+  CLI::App* rotate = add("rotate",
+                         "Print a new token in place of that of NAME, with the same scope and "
+                         "projects. The owner's goes to DATABASE.token");
   add_name(rotate);
   add_expiry(rotate);
   add_number(*rotate, "--overlap-hours", token.overlap_hours, 0, 8760,
@@ -166,27 +165,24 @@ void add_flags(CLI::App& app, Settings& settings) {
       "--check", settings.check_only,
       "Check settings, database and a computed case, then exit: 0 if the server would start");
   app.add_option("--listen", settings.listen,
-                 "Addresses with commas between them, each a numeric address and port (0: any "
-                 "free one) or unix:PATH. Addresses beyond loopback need TLS. Only the owner's "
-                 "processes reach a Unix socket, and they "
-                 "need no token. Default: the socket at which tribodyn looks first, and "
-                 "127.0.0.1:50651");
+                 "Addresses with commas between them, each a numeric address and port (0: any free "
+                 "one) or unix:PATH. Addresses beyond loopback need TLS. Only the owner's "
+                 "processes reach a Unix socket, and they need no token. Default: the socket at "
+                 "which tribodyn looks first, and 127.0.0.1:50651");
   app.add_option("--tls-certificate", settings.tls.certificate,
                  "PEM file with the certificate of the server and those that sign it, for "
                  "addresses beyond loopback; read again when it changes. "
                  "deploy/make-certificates makes one");
   app.add_option("--tls-key", settings.tls.key, "PEM file with the private key of the certificate");
-  app.add_option(
-      "--tls-client-authorities", settings.tls.client_authorities,
-      "PEM file with the certificates that sign those of clients; then every client "
-      "beyond loopback needs one. `tribodynd tokens create NAME --certificate` says what "
-      "the client whose certificate has the common name NAME may do");
+  app.add_option("--tls-client-authorities", settings.tls.client_authorities,
+                 "PEM file with the certificates that sign those of clients; then every client "
+                 "beyond loopback needs one. `tribodynd tokens create NAME --certificate` says "
+                 "what the client whose certificate has the common name NAME may do");
   app.add_option("--database", settings.database,
                  "SQLite file; created if missing. Use a local disk");
   add_projects(app, settings.projects,
-               "Projects beside `default`, e.g. gearboxes,axles. A new one gets the resources "
-               "that every database begins with. A project of the database stays without the "
-               "flag");
+               "Projects beside `default`, e.g. gearboxes,axles. A new one gets the resources that "
+               "every database begins with. A project of the database stays without the flag");
   add_number(app, "--threads", settings.threads, 0, 1024,
              "Simulations computed at the same time; 0: one per processor. Recommended: 0");
   add_number(app, "--call-limit-seconds", settings.call_limit_seconds, 0, 86400,
@@ -237,11 +233,10 @@ void add_flags(CLI::App& app, Settings& settings) {
   app.add_option(
       "--port-file", settings.port_file,
       "File for the address, written when the server accepts calls and removed at its end");
-  app.add_option(
-      "--http-listen", settings.http_listen,
-      "Addresses, as those of --listen, of the REST interface, of /metrics for Prometheus and of "
-      "/healthz; none by default. Addresses beyond loopback need TLS. Recommended: "
-      "127.0.0.1:50652");
+  app.add_option("--http-listen", settings.http_listen,
+                 "Addresses, as those of --listen, of the REST interface, of /metrics for "
+                 "Prometheus and of /healthz; none by default. Addresses beyond loopback need TLS. "
+                 "Recommended: 127.0.0.1:50652");
   app.add_option("--dashboard", settings.dashboard,
                  "Folder with the files of the dashboard, which the address of --http-listen "
                  "serves. Default: the one that deploy/build-dashboard made, or that of the "

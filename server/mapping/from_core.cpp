@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/version.h"
+#include "server/support/value_of.h"
 
 namespace tribodyn::server {
 namespace {
@@ -90,49 +91,28 @@ void set_losses(v1::PointResult* out, const PointResult& result) {
   out->set_boundary_to_viscous_friction_ratio(result.boundary_to_viscous_friction_ratio);
 }
 
-const char* name_of(OrbitFigure figure) {
-  switch (figure) {
-    case OrbitFigure::kInefficiencyRms:
-      return "inefficiency_rms_percent";
-    case OrbitFigure::kInefficiencyEnergyMean:
-      return "inefficiency_energy_mean_percent";
-    case OrbitFigure::kMeshLossPower:
-      return "mesh_loss_power_watts";
-    case OrbitFigure::kMeshLossTorque:
-      return "mesh_loss_torque_newton_metres";
-    case OrbitFigure::kPinionFrictionTorque:
-      return "pinion_friction_torque_newton_metres.mean";
-    case OrbitFigure::kFilmRatio:
-      return "film_ratio.mean";
-    case OrbitFigure::kContactTemperature:
-      return "contact_temperature_kelvin.mean";
-    case OrbitFigure::kTransmissionErrorMinimum:
-      return "dynamic_transmission_error_metres.minimum";
-    case OrbitFigure::kTransmissionErrorMaximum:
-      return "dynamic_transmission_error_metres.maximum";
-  }
-  return "";
-}
+constexpr std::pair<OrbitFigure, const char*> kOrbitFigureNames[] = {
+    {OrbitFigure::kInefficiencyRms, "inefficiency_rms_percent"},
+    {OrbitFigure::kInefficiencyEnergyMean, "inefficiency_energy_mean_percent"},
+    {OrbitFigure::kMeshLossPower, "mesh_loss_power_watts"},
+    {OrbitFigure::kMeshLossTorque, "mesh_loss_torque_newton_metres"},
+    {OrbitFigure::kPinionFrictionTorque, "pinion_friction_torque_newton_metres.mean"},
+    {OrbitFigure::kFilmRatio, "film_ratio.mean"},
+    {OrbitFigure::kContactTemperature, "contact_temperature_kelvin.mean"},
+    {OrbitFigure::kTransmissionErrorMinimum, "dynamic_transmission_error_metres.minimum"},
+    {OrbitFigure::kTransmissionErrorMaximum, "dynamic_transmission_error_metres.maximum"}};
+static_assert(std::size(kOrbitFigureNames) == kOrbitFigures);
 
-const char* name_of(LimitedFigure figure) {
-  switch (figure) {
-    case LimitedFigure::kFilmRatioMinimum:
-      return "film_ratio.minimum";
-    case LimitedFigure::kPressureMaximum:
-      return "maximum_pressure_pascals.maximum";
-    case LimitedFigure::kContactTemperatureMinimum:
-      return "contact_temperature_kelvin.minimum";
-    case LimitedFigure::kContactTemperatureMaximum:
-      return "contact_temperature_kelvin.maximum";
-    case LimitedFigure::kFlashTemperatureMaximum:
-      return "flash_temperature_rise_kelvin.maximum";
-  }
-  return "";
-}
+constexpr std::pair<LimitedFigure, const char*> kLimitedFigureNames[] = {
+    {LimitedFigure::kFilmRatioMinimum, "film_ratio.minimum"},
+    {LimitedFigure::kPressureMaximum, "maximum_pressure_pascals.maximum"},
+    {LimitedFigure::kContactTemperatureMinimum, "contact_temperature_kelvin.minimum"},
+    {LimitedFigure::kContactTemperatureMaximum, "contact_temperature_kelvin.maximum"},
+    {LimitedFigure::kFlashTemperatureMaximum, "flash_temperature_rise_kelvin.maximum"}};
 
 void set(v1::PointSensitivities* out, const PointSensitivities& sensitivities) {
   for (int f = 0; f < kOrbitFigures; ++f) {
-    out->add_figures(name_of(static_cast<OrbitFigure>(f)));
+    out->add_figures(value_of(kOrbitFigureNames, static_cast<OrbitFigure>(f), ""));
     out->add_values(sensitivities.figure[static_cast<std::size_t>(f)]);
   }
   for (const ParameterSensitivity& parameter : sensitivities.parameters) {
@@ -227,7 +207,7 @@ v1::EvaluateContactResponse to_message(const ContactSolution& s) {
 
 v1::FigureLimit to_message(const FigureLimit& limit) {
   v1::FigureLimit out;
-  out.set_figure(name_of(limit.figure));
+  out.set_figure(value_of(kLimitedFigureNames, limit.figure, ""));
   if (limit.minimum) out.set_minimum(*limit.minimum);
   if (limit.maximum) out.set_maximum(*limit.maximum);
   out.set_source(limit.source);
@@ -235,12 +215,7 @@ v1::FigureLimit to_message(const FigureLimit& limit) {
 }
 
 v1::PointModel to_message(PointModel model) {
-  switch (model) {
-    case PointModel::kQuasiStatic:
-      return v1::POINT_MODEL_QUASI_STATIC;
-    default:
-      return v1::POINT_MODEL_FULL;
-  }
+  return model == PointModel::kQuasiStatic ? v1::POINT_MODEL_QUASI_STATIC : v1::POINT_MODEL_FULL;
 }
 
 v1::PointResult to_message(const PointResult& result, int maximum_contact_losses) {

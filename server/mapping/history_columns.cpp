@@ -1,5 +1,9 @@
 #include "server/mapping/history_columns.h"
 
+#include <iterator>
+
+#include "server/support/value_of.h"
+
 namespace tribodyn::server {
 
 std::optional<HistoryColumn> history_column(std::string_view name) {
@@ -20,75 +24,48 @@ std::vector<std::string> history_column_names() {
 }
 
 std::string_view history_column_description(HistoryColumn column) {
-  switch (column) {
-    case HistoryColumn::kTime:
-      return "time from the first row";
-    case HistoryColumn::kMeshPhase:
-      return "mesh cycles from the first row";
-    case HistoryColumn::kPinionShaftSpeed:
-      return "speed of the pinion shaft";
-    case HistoryColumn::kPinionSpeed:
-      return "speed of the pinion";
-    case HistoryColumn::kGearSpeed:
-      return "speed of the gear";
-    case HistoryColumn::kWheelSpeed:
-      return "speed of the wheel";
-    case HistoryColumn::kDynamicTransmissionError:
-      return "dynamic transmission error, eq 6";
-    case HistoryColumn::kDynamicTransmissionErrorVelocity:
-      return "rate of the dynamic transmission error";
-    case HistoryColumn::kMeshForce:
-      return "force of the mesh, spring and damper";
-    case HistoryColumn::kPinionShaftTorque:
-      return "torque in the shaft of the pinion, spring and damper";
-    case HistoryColumn::kGearShaftTorque:
-      return "torque in the shaft of the gear, spring and damper";
-    case HistoryColumn::kPinionFrictionTorque:
-      return "torque of the flanks' friction on the pinion, eq 29";
-    case HistoryColumn::kGearFrictionTorque:
-      return "torque of the flanks' friction on the gear, eq 29";
-    case HistoryColumn::kMeshLossPower:
-      return "loss power of the mesh: friction times sliding speed over all flanks";
-    case HistoryColumn::kInefficiency:
-      return "loss power over the power that comes in, eq 30, at this instant";
-    case HistoryColumn::kFlankLoad:
-      return "normal load of the flank";
-    case HistoryColumn::kFlankFriction:
-      return "friction of the flank, viscous and boundary";
-    case HistoryColumn::kFlankViscousFriction:
-      return "viscous friction F_v of the flank";
-    case HistoryColumn::kFlankBoundaryFriction:
-      return "boundary friction F_b of the flank, eq 40";
-    case HistoryColumn::kFlankFilmThickness:
-      return "central film thickness of the flank, eq 12";
-    case HistoryColumn::kFlankFilmRatio:
-      return "film ratio lambda_s of the flank: film thickness over roughness";
-    case HistoryColumn::kFlankContactTemperature:
-      return "mean temperature T_c of the film of the flank, eq 38";
-    case HistoryColumn::kFlankMaximumPressure:
-      return "largest pressure of the flank, eq 19";
-    case HistoryColumn::kFlankShearRate:
-      return "shear rate of the film of the flank, eq 18";
-    case HistoryColumn::kFlankSlidingSpeed:
-      return "sliding speed V_s of the flank";
-    case HistoryColumn::kFlankFrictionCoefficient:
-      return "friction coefficient of the flank: friction over normal load";
-    case HistoryColumn::kFlankFlashTemperatureRise:
-      return "flash temperature rise of the flank: of its surfaces above the inlet, eq 39";
-    case HistoryColumn::kFlankPinionSpecificSliding:
-      return "specific sliding of the pinion: sliding speed over the speed of its surface";
-    case HistoryColumn::kFlankGearSpecificSliding:
-      return "specific sliding of the gear: sliding speed over the speed of its surface";
-    case HistoryColumn::kFlankEntrainmentSpeed:
-      return "entrainment speed U_eff of the flank, eq 17";
-    case HistoryColumn::kFlankMeanShearStress:
-      return "mean shear stress of the film of the flank, eq 23 under the limiting shear stress";
-    case HistoryColumn::kFlankLimitingStressAreaShare:
-      return "share of the contact area of the flank at the limiting shear stress";
-    case HistoryColumn::kFlankAsperityLoad:
-      return "part of the normal load that asperities carry, W_asp, eq 41";
-  }
-  return "";
+  using enum HistoryColumn;
+  static constexpr std::pair<HistoryColumn, const char*> kDescriptions[] = {
+      {kTime, "time from the first row"},
+      {kMeshPhase, "mesh cycles from the first row"},
+      {kPinionShaftSpeed, "speed of the pinion shaft"},
+      {kPinionSpeed, "speed of the pinion"},
+      {kGearSpeed, "speed of the gear"},
+      {kWheelSpeed, "speed of the wheel"},
+      {kDynamicTransmissionError, "dynamic transmission error, eq 6"},
+      {kDynamicTransmissionErrorVelocity, "rate of the dynamic transmission error"},
+      {kMeshForce, "force of the mesh, spring and damper"},
+      {kPinionShaftTorque, "torque in the shaft of the pinion, spring and damper"},
+      {kGearShaftTorque, "torque in the shaft of the gear, spring and damper"},
+      {kPinionFrictionTorque, "torque of the flanks' friction on the pinion, eq 29"},
+      {kGearFrictionTorque, "torque of the flanks' friction on the gear, eq 29"},
+      {kMeshLossPower, "loss power of the mesh: friction times sliding speed over all flanks"},
+      {kInefficiency, "loss power over the power that comes in, eq 30, at this instant"},
+      {kFlankLoad, "normal load of the flank"},
+      {kFlankFriction, "friction of the flank, viscous and boundary"},
+      {kFlankViscousFriction, "viscous friction F_v of the flank"},
+      {kFlankBoundaryFriction, "boundary friction F_b of the flank, eq 40"},
+      {kFlankFilmThickness, "central film thickness of the flank, eq 12"},
+      {kFlankFilmRatio, "film ratio lambda_s of the flank: film thickness over roughness"},
+      {kFlankContactTemperature, "mean temperature T_c of the film of the flank, eq 38"},
+      {kFlankMaximumPressure, "largest pressure of the flank, eq 19"},
+      {kFlankShearRate, "shear rate of the film of the flank, eq 18"},
+      {kFlankSlidingSpeed, "sliding speed V_s of the flank"},
+      {kFlankFrictionCoefficient, "friction coefficient of the flank: friction over normal load"},
+      {kFlankFlashTemperatureRise,
+       "flash temperature rise of the flank: of its surfaces above the inlet, eq 39"},
+      {kFlankPinionSpecificSliding,
+       "specific sliding of the pinion: sliding speed over the speed of its surface"},
+      {kFlankGearSpecificSliding,
+       "specific sliding of the gear: sliding speed over the speed of its surface"},
+      {kFlankEntrainmentSpeed, "entrainment speed U_eff of the flank, eq 17"},
+      {kFlankMeanShearStress,
+       "mean shear stress of the film of the flank, eq 23 under the limiting shear stress"},
+      {kFlankLimitingStressAreaShare,
+       "share of the contact area of the flank at the limiting shear stress"},
+      {kFlankAsperityLoad, "part of the normal load that asperities carry, W_asp, eq 41"}};
+  static_assert(std::size(kDescriptions) == kHistoryColumns);
+  return value_of(kDescriptions, column, "");
 }
 
 std::string_view history_column_unit(std::string_view name) {

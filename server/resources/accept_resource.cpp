@@ -26,8 +26,7 @@ template <class Repeated>
 bool check_count(const Repeated& list, int maximum, const std::string& path,
                  Violations& violations) {
   if (list.size() <= maximum) return true;
-  violations.push_back(
-      {path, fmt::format("{} entries; allowed: at most {}", list.size(), maximum)});
+  violations.add(path, "{} entries; allowed: at most {}", list.size(), maximum);
   return false;
 }
 
@@ -73,12 +72,12 @@ void check_descent(const Resource& stated, const ResourceLookup& lookup, const s
   const std::string collection = Kind<Resource>::kCollection;
   const auto parsed = parse_revision_name(name, collection);
   if (parsed && parsed->name == stated.name()) {
-    violations.push_back({path, fmt::format("{} is the resource itself", name)});
+    violations.add(path, "{} is the resource itself", name);
     // an import may renumber revisions, so the revision is not checked
   } else if (!parsed || !lookup.find({parsed->name, 0})) {
-    violations.push_back({path, unknown_name_text(name, collection, lookup.names(collection))});
+    violations.add(path, unknown_name_text(name, collection, lookup.names(collection)));
   } else if (descends<Resource>(parsed->name, stated.name(), lookup)) {
-    violations.push_back({path, fmt::format("{} itself descends from {}", name, stated.name())});
+    violations.add(path, "{} itself descends from {}", name, stated.name());
   }
 }
 
@@ -147,8 +146,8 @@ void check_measurements(const v1::LubricantMeasurements& measurements, const std
         v1::ViscosityMeasurement::VISCOSITY_NOT_SET) {
       continue;
     }
-    violations.push_back({fmt::format("{}[{}].viscosity", viscosities, i),
-                          "not set; allowed: a kinematic or a dynamic viscosity (eq 34)"});
+    violations.add(fmt::format("{}[{}].viscosity", viscosities, i),
+                   "not set; allowed: a kinematic or a dynamic viscosity (eq 34)");
   }
 }
 
@@ -202,25 +201,45 @@ void check_provenance_of_computed(const v1::Lubricant& lubricant, const v1::Lubr
         reflection.GetDouble(lubricant, field) != reflection.GetDouble(*present, field);
     const bool is_computed = entry.computed() && before != nullptr && !is_changed;
     if (is_computed || (!is_stated && !entry.computed() && !is_default_provenance(entry))) {
-      violations.push_back(
-          {fmt::format("{}[{}].{}", path, i,
-                       entry.standard_uncertainty() != 0 ? "standard_uncertainty" : "provenance"),
-           fmt::format("{} is computed, not stated, and its uncertainty and provenance with it; "
-                       "allowed: both together with the value",
-                       entry.field())});
+      violations.add(
+          fmt::format("{}[{}].{}", path, i,
+                      entry.standard_uncertainty() != 0 ? "standard_uncertainty" : "provenance"),
+          "{} is computed, not stated, and its uncertainty and provenance with it; "
+          "allowed: both together with the value",
+          entry.field());
     }
   }
 }
 
-/// A kind without rules of its own; those with rules follow.
+/// Accepts a resource that also passes `check`, which adds violations of rules of its kind.
+template <class Resource, class Check>
+std::optional<Resource> accept_checked(const Resource& stated, const ResourceLookup& lookup,
+                                       const std::string& path, Violations& violations,
+                                       const Check& check) {
+  const std::size_t before = violations.size();
+  Resource out = normalize(stated, lookup, path, Missing::kViolation, violations);
+  check(out);
+  if (violations.size() > before) return std::nullopt;
+  return finalize(std::move(out));
+}
+
+// Rules of single kinds.
+template <class Resource>
+void check_kind(const Resource&, const std::string&, Violations&) {}
+void check_kind(const v1::GearSet& gear_set, const std::string& path, Violations& violations) {
+  check_gear_set(gear_set, path, violations);
+}
+void check_kind(const v1::Surface& surface, const std::string& path, Violations& violations) {
+  check_count(surface.measurements(), kMaximumMeasurements, join_path(path, "measurements"),
+              violations);
+}
+
 template <class Resource>
 std::optional<Resource> accept_kind(const Resource& stated, const std::type_identity_t<Resource>*,
                                     const ResourceLookup& lookup, const std::string& path,
                                     Violations& violations) {
-  const std::size_t before = violations.size();
-  Resource out = normalize(stated, lookup, path, Missing::kViolation, violations);
-  if (violations.size() > before) return std::nullopt;
-  return finalize(std::move(out));
+  return accept_checked(stated, lookup, path, violations,
+                        [&](const Resource& resource) { check_kind(resource, path, violations); });
 }
 
 std::optional<v1::Lubricant> accept_kind(const v1::Lubricant& stated, const v1::Lubricant* present,
@@ -253,37 +272,10 @@ std::optional<v1::Lubricant> accept_kind(const v1::Lubricant& stated, const v1::
 std::optional<v1::GearSet> accept(const v1::GearSet& stated, const LocateSample& locate,
                                   const ResourceLookup& lookup, const std::string& path,
                                   Violations& violations) {
-  const std::size_t before = violations.size();
-  v1::GearSet out = normalize(stated, lookup, path, Missing::kViolation, violations);
-  if (locate) {
-    check_gear_set(out, locate, path, violations);
-  } else {
-    check_gear_set(out, path, violations);
-  }
-  if (violations.size() > before) return std::nullopt;
-  return finalize(std::move(out));
+  return accept_checked(stated, lookup, path, violations, [&](const v1::GearSet& gear_set) {
+    check_gear_set(gear_set, locate, path, violations);
+  });
 }
-
-namespace {
-
-std::optional<v1::GearSet> accept_kind(const v1::GearSet& stated, const v1::GearSet*,
-                                       const ResourceLookup& lookup, const std::string& path,
-                                       Violations& violations) {
-  return accept(stated, LocateSample(), lookup, path, violations);
-}
-
-std::optional<v1::Surface> accept_kind(const v1::Surface& stated, const v1::Surface*,
-                                       const ResourceLookup& lookup, const std::string& path,
-                                       Violations& violations) {
-  const std::size_t before = violations.size();
-  v1::Surface out = normalize(stated, lookup, path, Missing::kViolation, violations);
-  check_count(out.measurements(), kMaximumMeasurements, join_path(path, "measurements"),
-              violations);
-  if (violations.size() > before) return std::nullopt;
-  return finalize(std::move(out));
-}
-
-}  // namespace
 
 template <class Resource>
 std::optional<Resource> accept(const Resource& stated,

@@ -30,8 +30,7 @@ class TableViolations {
       : path_(path), violations_(violations) {}
   ~TableViolations() {
     if (count_ <= kMaximumTableViolations) return;
-    violations_.push_back(
-        {path_, fmt::format("{} more violations", count_ - kMaximumTableViolations)});
+    violations_.add(path_, "{} more violations", count_ - kMaximumTableViolations);
   }
   TableViolations(const TableViolations&) = delete;
   TableViolations& operator=(const TableViolations&) = delete;
@@ -40,7 +39,7 @@ class TableViolations {
   /// Calls `place` and `text` only for violations that are kept.
   template <class Place, class Text>
   void add(const Place& place, const Text& text) {
-    if (++count_ <= kMaximumTableViolations) violations_.push_back({place(), text()});
+    if (++count_ <= kMaximumTableViolations) violations_.add(place(), text());
   }
 
  private:
@@ -58,14 +57,13 @@ bool check_sizes(const v1::GearSet& set, const std::string& path, Violations& vi
   const std::size_t before = violations.size();
   const std::string slots = join_path(path, "flank_slots");
   if (set.flank_slots_size() != kFlankPairs) {
-    violations.push_back(
-        {slots, fmt::format("{} slots; allowed: {} (eq 29)", set.flank_slots_size(), kFlankPairs)});
+    violations.add(slots, "{} slots; allowed: {} (eq 29)", set.flank_slots_size(), kFlankPairs);
     return false;
   }
   const int samples = set.flank_slots(0).load_share_size();
   if (samples < 2 || samples > kMaximumFlankSamples) {
-    violations.push_back({slots + "[0].load_share", fmt::format("{} samples; allowed: 2 to {}",
-                                                                samples, kMaximumFlankSamples)});
+    violations.add(slots + "[0].load_share", "{} samples; allowed: 2 to {}", samples,
+                   kMaximumFlankSamples);
     return false;
   }
   const auto& descriptor = *v1::FlankSlot::descriptor();
@@ -73,10 +71,9 @@ bool check_sizes(const v1::GearSet& set, const std::string& path, Violations& vi
     for (int i = 0; i < descriptor.field_count(); ++i) {
       const int size = column(set.flank_slots(k), *descriptor.field(i)).size();
       if (size == samples) continue;
-      violations.push_back(
-          {fmt::format("{}[{}].{}", slots, k, descriptor.field(i)->name()),
-           fmt::format("{} samples; allowed: {}, the number of the first slot's load share", size,
-                       samples)});
+      violations.add(fmt::format("{}[{}].{}", slots, k, descriptor.field(i)->name()),
+                     "{} samples; allowed: {}, the number of the first slot's load share", size,
+                     samples);
     }
   }
   return violations.size() == before;
@@ -91,7 +88,7 @@ void check_numbers(const v1::GearSet& set, const LocateSample& locate, TableViol
       const Numbers values = column(set.flank_slots(k), field);
       for (int j = 0; j < values.size(); ++j) {
         const double value = values.Get(j);
-        if (value >= row->minimum && value <= row->maximum) continue;  // false for NaN
+        if (row->allows(value)) continue;
         limited.add([&] { return locate(k, j, field.name()); },
                     [&] { return out_of_range_text(*row, value); });
       }
@@ -199,16 +196,15 @@ std::optional<double> other_ratio_of_data(const v1::GearSet& set) {
 void check_range(std::string_view message, std::string_view field, double value,
                  const std::string& path, Violations& violations) {
   const Constraint* row = find_constraint(message, field);
-  if (value >= row->minimum && value <= row->maximum) return;  // false for NaN
-  violations.push_back({path, out_of_range_text(*row, value)});
+  if (row->allows(value)) return;
+  violations.add(path, out_of_range_text(*row, value));
 }
 
 void check_fourier(const v1::FourierSeries& series, const std::string& path,
                    Violations& violations) {
   if (series.sine_size() != series.cosine_size() || series.sine_size() > kMaximumHarmonics) {
-    violations.push_back(
-        {path, fmt::format("{} sine and {} cosine terms; allowed: as many of each, at most {}",
-                           series.sine_size(), series.cosine_size(), kMaximumHarmonics)});
+    violations.add(path, "{} sine and {} cosine terms; allowed: as many of each, at most {}",
+                   series.sine_size(), series.cosine_size(), kMaximumHarmonics);
   }
   check_range("FourierSeries", "mean", series.mean(), join_path(path, "mean"), violations);
   const int harmonics = std::min({series.sine_size(), series.cosine_size(), kMaximumHarmonics});
@@ -224,8 +220,7 @@ void check_fourier(const v1::FourierSeries& series, const std::string& path,
 template <class Entries>
 void check_torques(const Entries& entries, const std::string& path, Violations& violations) {
   if (entries.size() > kMaximumTorques) {
-    violations.push_back(
-        {path, fmt::format("{} torques; allowed: at most {}", entries.size(), kMaximumTorques)});
+    violations.add(path, "{} torques; allowed: at most {}", entries.size(), kMaximumTorques);
   }
   for (int i = 0; i < std::min(entries.size(), kMaximumTorques); ++i) {
     check_range("LoadShareAtTorque", "pinion_torque_newton_metres",
@@ -236,8 +231,8 @@ void check_torques(const Entries& entries, const std::string& path, Violations& 
     const double before = entries.Get(i - 1).pinion_torque_newton_metres();
     const double torque = entries.Get(i).pinion_torque_newton_metres();
     if (torque > before) continue;
-    violations.push_back({fmt::format("{}[{}].pinion_torque_newton_metres", path, i),
-                          fmt::format("{} N m after {} N m; allowed: ascending", torque, before)});
+    violations.add(fmt::format("{}[{}].pinion_torque_newton_metres", path, i),
+                   "{} N m after {} N m; allowed: ascending", torque, before);
   }
 }
 
@@ -254,9 +249,8 @@ void check_shares_by_torque(const v1::GearSet& set, const std::string& path,
     bool whole = entry.slots_size() == kFlankPairs;
     for (const auto& slot : entry.slots()) whole = whole && slot.load_share_size() == samples;
     if (!whole) {
-      violations.push_back({here + ".slots", fmt::format("allowed: {} slots of {} samples, as in "
-                                                         "flank_slots",
-                                                         kFlankPairs, samples)});
+      violations.add(here + ".slots", "allowed: {} slots of {} samples, as in flank_slots",
+                     kFlankPairs, samples);
       continue;
     }
     v1::GearSet shares;  // holds the slots as the checks below expect them
@@ -267,7 +261,7 @@ void check_shares_by_torque(const v1::GearSet& set, const std::string& path,
     for (int k = 0; k < kFlankPairs; ++k) {
       for (int j = 0; j < samples; ++j) {
         const double share = shares.flank_slots(k).load_share(j);
-        if (share >= row->minimum && share <= row->maximum) continue;
+        if (row->allows(share)) continue;
         limited.add([&] { return locate(k, j, "load_share"); },
                     [&] { return out_of_range_text(*row, share); });
       }
@@ -306,10 +300,10 @@ void check_series(const v1::MeshSeries& series, const v1::GearSet& gear_set,
   const double gear = series.gear_contact_radius_metres().mean();
   const double expected = pinion * gear_set.gear_teeth() / gear_set.pinion_teeth();
   if (std::abs(gear - expected) <= kRatioTolerance * std::abs(expected)) return;
-  violations.push_back({join_path(path, "gear_contact_radius_metres.mean"),
-                        fmt::format("R_g0 = {} m; allowed: R_p0 N_g/N_p = {} m within {}, or the "
-                                    "transmission error grows without bound (eqs 8, 9)",
-                                    gear, expected, kRatioTolerance)});
+  violations.add(join_path(path, "gear_contact_radius_metres.mean"),
+                 "R_g0 = {} m; allowed: R_p0 N_g/N_p = {} m within {}, or the "
+                 "transmission error grows without bound (eqs 8, 9)",
+                 gear, expected, kRatioTolerance);
 }
 
 namespace {
@@ -319,12 +313,12 @@ void check_tables(const v1::GearSet& gear_set, const LocateSample& locate, const
                   Violations& violations) {
   const std::size_t before = violations.size();
   if (!gear_set.has_series()) {
-    violations.push_back({join_path(path, "series"), "not set (eqs 8-11)"});
+    violations.add(join_path(path, "series"), "not set (eqs 8-11)");
   } else {
     check_series(gear_set.series(), gear_set, join_path(path, "series"), violations);
   }
   if (!gear_set.has_dynamics()) {
-    violations.push_back({join_path(path, "dynamics"), "not set (eqs 1-5)"});
+    violations.add(join_path(path, "dynamics"), "not set (eqs 1-5)");
   }
   check_flank_slots(gear_set, locate, path, violations);
   const std::string by_torque = join_path(path, "series_by_torque");
@@ -345,11 +339,10 @@ void check_gear_set(const v1::GearSet& gear_set, const LocateSample& locate,
                     const std::string& path, Violations& violations) {
   const std::size_t before = violations.size();
   if (const auto ratio = other_ratio_of_data(gear_set)) {
-    violations.push_back(
-        {join_path(path, "gear_teeth"),
-         fmt::format("{}/{} teeth; the series (R_g0/R_p0) and the flank slots belong to a ratio of "
-                     "{:.6g}; a gear set of another ratio needs tooth contact data of its own",
-                     gear_set.gear_teeth(), gear_set.pinion_teeth(), *ratio)});
+    violations.add(join_path(path, "gear_teeth"),
+                   "{}/{} teeth; the series (R_g0/R_p0) and the flank slots belong to a ratio of "
+                   "{:.6g}; a gear set of another ratio needs tooth contact data of its own",
+                   gear_set.gear_teeth(), gear_set.pinion_teeth(), *ratio);
     v1::GearSet without_teeth = gear_set;  // the checks against the ratio need them
     without_teeth.clear_pinion_teeth();
     without_teeth.clear_gear_teeth();
@@ -360,7 +353,7 @@ void check_gear_set(const v1::GearSet& gear_set, const LocateSample& locate,
   try {
     check(to_core(gear_set));
   } catch (const Refusal& refusal) {
-    violations.push_back({path.empty() ? "gear_set" : path, refusal.what()});
+    violations.add(path.empty() ? "gear_set" : path, refusal.what());
   }
 }
 

@@ -14,6 +14,7 @@
 #include "server/resources/provenance.h"
 #include "server/resources/viscosity_fit.h"
 #include "server/support/lru_cache.h"
+#include "server/support/value_of.h"
 
 namespace tribodyn::server {
 namespace {
@@ -39,37 +40,25 @@ struct Member {
   KnownParameter Known::*known;
 };
 
+#define TRIBODYN_MEMBER(field, member) \
+  { field, #member, &Stated::member, &Known::member }
 constexpr Member kMembers[] = {
-    {"vogel_viscosity_prefactor_pascal_seconds", "vogel_viscosity_prefactor",
-     &Stated::vogel_viscosity_prefactor, &Known::vogel_viscosity_prefactor},
-    {"vogel_temperature_coefficient_kelvin", "vogel_temperature_coefficient",
-     &Stated::vogel_temperature_coefficient, &Known::vogel_temperature_coefficient},
-    {"vogel_reference_temperature_kelvin", "vogel_reference_temperature",
-     &Stated::vogel_reference_temperature, &Known::vogel_reference_temperature},
-    {"pressure_viscosity_coefficient_per_pascal", "pressure_viscosity_coefficient",
-     &Stated::pressure_viscosity_coefficient, &Known::pressure_viscosity_coefficient},
-    {"pressure_viscosity_temperature_kelvin", "pressure_viscosity_temperature",
-     &Stated::pressure_viscosity_temperature, &Known::pressure_viscosity_temperature},
-    {"relaxation_time_seconds", "relaxation_time", &Stated::relaxation_time,
-     &Known::relaxation_time},
-    {"havriliak_negami_alpha", "havriliak_negami_alpha", &Stated::havriliak_negami_alpha,
-     &Known::havriliak_negami_alpha},
-    {"havriliak_negami_beta", "havriliak_negami_beta", &Stated::havriliak_negami_beta,
-     &Known::havriliak_negami_beta},
-    {"rheology_reference_temperature_kelvin", "rheology_reference_temperature",
-     &Stated::rheology_reference_temperature, &Known::rheology_reference_temperature},
-    {"limiting_shear_stress_at_zero_pressure_pascals", "limiting_shear_stress_at_zero_pressure",
-     &Stated::limiting_shear_stress_at_zero_pressure,
-     &Known::limiting_shear_stress_at_zero_pressure},
-    {"limiting_shear_stress_coefficient", "limiting_shear_stress_coefficient",
-     &Stated::limiting_shear_stress_coefficient, &Known::limiting_shear_stress_coefficient},
-    {"thermal_conductivity_watts_per_metre_kelvin", "thermal_conductivity",
-     &Stated::thermal_conductivity, &Known::thermal_conductivity},
-    {"density_at_zero_kelvin_kilograms_per_cubic_metre", "density_at_zero_kelvin",
-     &Stated::density_at_zero_kelvin, &Known::density_at_zero_kelvin},
-    {"density_slope_kilograms_per_cubic_metre_kelvin", "density_temperature_slope",
-     &Stated::density_temperature_slope, &Known::density_temperature_slope},
-};
+    TRIBODYN_MEMBER("vogel_viscosity_prefactor_pascal_seconds", vogel_viscosity_prefactor),
+    TRIBODYN_MEMBER("vogel_temperature_coefficient_kelvin", vogel_temperature_coefficient),
+    TRIBODYN_MEMBER("vogel_reference_temperature_kelvin", vogel_reference_temperature),
+    TRIBODYN_MEMBER("pressure_viscosity_coefficient_per_pascal", pressure_viscosity_coefficient),
+    TRIBODYN_MEMBER("pressure_viscosity_temperature_kelvin", pressure_viscosity_temperature),
+    TRIBODYN_MEMBER("relaxation_time_seconds", relaxation_time),
+    TRIBODYN_MEMBER("havriliak_negami_alpha", havriliak_negami_alpha),
+    TRIBODYN_MEMBER("havriliak_negami_beta", havriliak_negami_beta),
+    TRIBODYN_MEMBER("rheology_reference_temperature_kelvin", rheology_reference_temperature),
+    TRIBODYN_MEMBER("limiting_shear_stress_at_zero_pressure_pascals",
+                    limiting_shear_stress_at_zero_pressure),
+    TRIBODYN_MEMBER("limiting_shear_stress_coefficient", limiting_shear_stress_coefficient),
+    TRIBODYN_MEMBER("thermal_conductivity_watts_per_metre_kelvin", thermal_conductivity),
+    TRIBODYN_MEMBER("density_at_zero_kelvin_kilograms_per_cubic_metre", density_at_zero_kelvin),
+    TRIBODYN_MEMBER("density_slope_kilograms_per_cubic_metre_kelvin", density_temperature_slope)};
+#undef TRIBODYN_MEMBER
 
 const FieldDescriptor* descriptor(const Member& member) {
   return v1::Lubricant::descriptor()->FindFieldByName(member.field);
@@ -79,48 +68,24 @@ bool is_set(const v1::Lubricant& lubricant, const Member& member) {
   return lubricant.GetReflection()->HasField(lubricant, descriptor(member));
 }
 
-v1::Provenance provenance_message(Provenance provenance) {
-  switch (provenance) {
-    case Provenance::kPublished:
-      return v1::PROVENANCE_PUBLISHED;
-    case Provenance::kDerived:
-      return v1::PROVENANCE_DERIVED;
-    case Provenance::kLiterature:
-      return v1::PROVENANCE_LITERATURE;
-    case Provenance::kMeasured:
-      return v1::PROVENANCE_MEASURED;
-    case Provenance::kFitted:
-      return v1::PROVENANCE_FITTED;
-    case Provenance::kAssumed:
-      return v1::PROVENANCE_ASSUMED;
-    case Provenance::kCalibrated:
-      return v1::PROVENANCE_CALIBRATED;
-    case Provenance::kUser:
-      return v1::PROVENANCE_USER;
-  }
-  return v1::PROVENANCE_UNSPECIFIED;
-}
+constexpr std::pair<Provenance, v1::Provenance> kProvenances[] = {
+    {Provenance::kPublished, v1::PROVENANCE_PUBLISHED},
+    {Provenance::kDerived, v1::PROVENANCE_DERIVED},
+    {Provenance::kLiterature, v1::PROVENANCE_LITERATURE},
+    {Provenance::kMeasured, v1::PROVENANCE_MEASURED},
+    {Provenance::kFitted, v1::PROVENANCE_FITTED},
+    {Provenance::kAssumed, v1::PROVENANCE_ASSUMED},
+    {Provenance::kCalibrated, v1::PROVENANCE_CALIBRATED},
+    {Provenance::kUser, v1::PROVENANCE_USER}};
 
-BaseOilClass base_oil_class(v1::Lubricant::BaseOilClass base_oil) {
-  switch (base_oil) {
-    case v1::Lubricant::BASE_OIL_CLASS_GROUP_I:
-      return BaseOilClass::kGroupI;
-    case v1::Lubricant::BASE_OIL_CLASS_GROUP_II:
-      return BaseOilClass::kGroupII;
-    case v1::Lubricant::BASE_OIL_CLASS_GROUP_III:
-      return BaseOilClass::kGroupIII;
-    case v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN:
-      return BaseOilClass::kPolyalphaolefin;
-    case v1::Lubricant::BASE_OIL_CLASS_ESTER:
-      return BaseOilClass::kEster;
-    case v1::Lubricant::BASE_OIL_CLASS_POLYALKYLENE_GLYCOL:
-      return BaseOilClass::kPolyalkyleneGlycol;
-    case v1::Lubricant::BASE_OIL_CLASS_NAPHTHENIC:
-      return BaseOilClass::kNaphthenic;
-    default:
-      return BaseOilClass::kUnspecified;
-  }
-}
+constexpr std::pair<v1::Lubricant::BaseOilClass, BaseOilClass> kBaseOilClasses[] = {
+    {v1::Lubricant::BASE_OIL_CLASS_GROUP_I, BaseOilClass::kGroupI},
+    {v1::Lubricant::BASE_OIL_CLASS_GROUP_II, BaseOilClass::kGroupII},
+    {v1::Lubricant::BASE_OIL_CLASS_GROUP_III, BaseOilClass::kGroupIII},
+    {v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN, BaseOilClass::kPolyalphaolefin},
+    {v1::Lubricant::BASE_OIL_CLASS_ESTER, BaseOilClass::kEster},
+    {v1::Lubricant::BASE_OIL_CLASS_POLYALKYLENE_GLYCOL, BaseOilClass::kPolyalkyleneGlycol},
+    {v1::Lubricant::BASE_OIL_CLASS_NAPHTHENIC, BaseOilClass::kNaphthenic}};
 
 std::optional<double> stated_number(double value, double factor) {
   return value == 0 ? std::nullopt : std::optional<double>(value * factor);
@@ -205,7 +170,7 @@ Entered entered(const v1::Lubricant& lubricant) {
   const v1::LubricantMeasurements& measured = lubricant.measurements();
   Entered result;
   FluidMeasurements& out = result.fluid;
-  out.base_oil = base_oil_class(lubricant.base_oil_class());
+  out.base_oil = value_of(kBaseOilClasses, lubricant.base_oil_class(), BaseOilClass::kUnspecified);
   out.kinematic_viscosity_40 = stated_number(
       measured.kinematic_viscosity_40_celsius_square_millimetres_per_second(), kSquareMillimetres);
   out.kinematic_viscosity_100 = stated_number(
@@ -274,7 +239,7 @@ void set_computed(v1::Lubricant& lubricant, const Member& member, const Characte
   const KnownParameter& known = fluid.parameters.*member.known;
   lubricant.GetReflection()->SetDouble(&lubricant, descriptor(member), known.value);
   v1::ParameterProvenance* entry = entry_of(lubricant, member.field);
-  entry->set_provenance(provenance_message(known.provenance));
+  entry->set_provenance(value_of(kProvenances, known.provenance, v1::PROVENANCE_UNSPECIFIED));
   entry->set_source(known.source);
   entry->set_standard_uncertainty(known.standard_uncertainty.value_or(0));
   entry->set_computed(true);
@@ -400,10 +365,9 @@ void check_law_of_pressure(const v1::Lubricant& lubricant, const std::string& pa
     const v1::ParameterProvenance* entry = find_provenance(lubricant.provenance(), field);
     const bool is_computed = entry != nullptr && entry->field() == field && entry->computed();
     if (!is_set || is_computed) return;
-    violations.push_back({join_path(path, field),
-                          fmt::format("{} is stated beside improved_yasutomi, which determines it; "
-                                      "allowed: unset",
-                                      field)});
+    violations.add(join_path(path, field),
+                   "{} is stated beside improved_yasutomi, which determines it; allowed: unset",
+                   field);
   };
   check("pressure_viscosity_coefficient_per_pascal",
         lubricant.has_pressure_viscosity_coefficient_per_pascal());
@@ -420,8 +384,7 @@ void complete_parameters(v1::Lubricant& lubricant, const std::string& path,
     const Entered stated = entered(lubricant);
     const CharacterisedFluid fluid = characterise(stated.fluid);
     for (const GrossError& error : fluid.gross_errors) {
-      violations.push_back(
-          {join_path(path, "measurements." + stated.field(error)), error.sentence});
+      violations.add(join_path(path, "measurements." + stated.field(error)), error.sentence);
     }
     if (!fluid.gross_errors.empty()) return;
     for (const Member& member : kMembers) {
@@ -429,7 +392,7 @@ void complete_parameters(v1::Lubricant& lubricant, const std::string& path,
     }
     // The measurements of a complete lubricant may allow no fit.
   } catch (const Refusal& refusal) {
-    if (!complete) violations.push_back({path, refusal.what()});
+    if (!complete) violations.add(path, refusal.what());
   }
 }
 

@@ -33,7 +33,7 @@ bool has_tables(const Descriptor& resource) {
 
 bool is_parameter(const FieldDescriptor& field) {
   return !field.is_repeated() && !is_output_only(field) && !is_documentary(field) &&
-         find_constraint(field.containing_type()->name(), field.name()) != nullptr;
+         find_constraint(field) != nullptr;
 }
 
 bool contains(const std::vector<std::string>& list, const std::string& word) {
@@ -98,24 +98,22 @@ void check_provenance(const Descriptor& resource, const Provenances& all, const 
     const v1::ParameterProvenance& entry = all.Get(i);
     const std::string here = fmt::format("{}[{}]", path, i);
     if (!contains(known, entry.field())) {
-      violations.push_back(
-          {here + ".field", fmt::format("\"{}\" is not a parameter{}", plain_excerpt(entry.field()),
-                                        meant_text(entry.field(), known))});
+      violations.add(here + ".field", "\"{}\" is not a parameter{}", plain_excerpt(entry.field()),
+                     meant_text(entry.field(), known));
       continue;
     }
     if (!seen.insert(entry.field()).second) {
-      violations.push_back({here + ".field", fmt::format("\"{}\" is named twice", entry.field())});
+      violations.add(here + ".field", "\"{}\" is named twice", entry.field());
     }
     const bool is_number = contains(paths.numbers, entry.field());
     if (entry.standard_uncertainty() != 0 && !is_number) {
-      violations.push_back({here + ".standard_uncertainty",
-                            fmt::format("\"{}\" is not a single number", entry.field())});
+      violations.add(here + ".standard_uncertainty", "\"{}\" is not a single number",
+                     entry.field());
     }
     const std::string unit = unit_of(resource, entry.field());
     if (!entry.unit().empty() && entry.unit() != unit) {
-      violations.push_back(
-          {here + ".unit", fmt::format("unit = \"{}\"; allowed: \"{}\", the unit of {}, or empty",
-                                       plain_excerpt(entry.unit()), unit, entry.field())});
+      violations.add(here + ".unit", "unit = \"{}\"; allowed: \"{}\", the unit of {}, or empty",
+                     plain_excerpt(entry.unit()), unit, entry.field());
     }
   }
 }

@@ -82,30 +82,28 @@ void add_gear_set(Assumptions& out, const v1::GearSet& set, bool load_dependent)
   }
 }
 
-void add_choice(Assumptions& out, const char* field, const std::string& stated,
-                const std::string& effective) {
-  add(out, "request", field, effective,
-      stated.empty() ? v1::PROVENANCE_ASSUMED : v1::PROVENANCE_USER,
-      stated.empty() ? "default: not set in the request" : "set in the request");
+/// Adds a value of the request, and where it comes from if the request does not set it.
+void add_choice(Assumptions& out, const char* field, const std::string& value, bool is_set,
+                v1::Provenance of_default = v1::PROVENANCE_ASSUMED,
+                const char* default_source = "default: not set in the request") {
+  add(out, "request", field, value, is_set ? v1::PROVENANCE_USER : of_default,
+      is_set ? "set in the request" : default_source);
 }
 
 void add_request(Assumptions& out, const SimulationInputs& inputs) {
   const v1::Simulation& asked = inputs.requested;
   const v1::Simulation& effective = inputs.effective;
-  add_choice(out, "lubricant", asked.lubricant(), effective.lubricant());
-  add_choice(out, "gear_set", asked.gear_set(), effective.gear_set());
-  add_choice(out, "surface", asked.surface(), effective.surface());
-  add_choice(out, "vehicle", asked.vehicle(), effective.vehicle());
-  const bool sump = asked.has_sump_temperature_celsius();
-  add(out, "request", "sump_temperature_celsius",
-      quantity_text(effective.sump_temperature_celsius(), "C"),
-      sump ? v1::PROVENANCE_USER : v1::PROVENANCE_ASSUMED,
-      sump ? "set in the request" : "default: not set in the request");
-  const bool rise = asked.has_inlet_temperature_rise_kelvin();
-  add(out, "request", "inlet_temperature_rise_kelvin",
-      quantity_text(effective.inlet_temperature_rise_kelvin(), "K"),
-      rise ? v1::PROVENANCE_USER : v1::PROVENANCE_PUBLISHED,
-      rise ? "set in the request" : "default: the value published with eq 14");
+  add_choice(out, "lubricant", effective.lubricant(), !asked.lubricant().empty());
+  add_choice(out, "gear_set", effective.gear_set(), !asked.gear_set().empty());
+  add_choice(out, "surface", effective.surface(), !asked.surface().empty());
+  add_choice(out, "vehicle", effective.vehicle(), !asked.vehicle().empty());
+  add_choice(out, "sump_temperature_celsius",
+             quantity_text(effective.sump_temperature_celsius(), "C"),
+             asked.has_sump_temperature_celsius());
+  add_choice(out, "inlet_temperature_rise_kelvin",
+             quantity_text(effective.inlet_temperature_rise_kelvin(), "K"),
+             asked.has_inlet_temperature_rise_kelvin(), v1::PROVENANCE_PUBLISHED,
+             "default: the value published with eq 14");
 }
 
 void add_resources(Assumptions& out, const SimulationInputs& inputs) {

@@ -66,26 +66,24 @@ void read_range(const v1::DesignFactor& stated, const std::string& path, PlacedF
                 Violations& violations) {
   out.range = FactorRange{stated.minimum(), stated.maximum(),
                           stated.scale() == v1::DesignFactor::LOGARITHMIC};
-  const Constraint* row = find_constraint(out.field->containing_type()->name(), out.field->name());
+  const Constraint* row = find_constraint(*out.field);
   bool is_right = true;
   for (const auto& [name, value] :
        {std::pair("minimum", stated.minimum()), std::pair("maximum", stated.maximum())}) {
-    if (row == nullptr || (value >= row->minimum && value <= row->maximum)) continue;
+    if (row == nullptr || row->allows(value)) continue;
     is_right = false;
-    violations.push_back({path + "." + name, out_of_range_text(*row, value)});
+    violations.add(path + "." + name, out_of_range_text(*row, value));
   }
   if (!is_right) return;
   const auto ends = [&] {
     return fmt::format("{} to {}", number_text(stated.minimum()), number_text(stated.maximum()));
   };
   if (!(stated.minimum() < stated.maximum())) {
-    violations.push_back({path + ".maximum", fmt::format("the range is {}; allowed: a maximum "
-                                                         "above the minimum",
-                                                         ends())});
+    violations.add(path + ".maximum", "the range is {}; allowed: a maximum above the minimum",
+                   ends());
   } else if (out.range->is_logarithmic && !(stated.minimum() > 0)) {
-    violations.push_back({path + ".minimum", fmt::format("the range is {}; allowed with "
-                                                         "LOGARITHMIC: a minimum above 0",
-                                                         ends())});
+    violations.add(path + ".minimum",
+                   "the range is {}; allowed with LOGARITHMIC: a minimum above 0", ends());
   }
 }
 
@@ -100,13 +98,13 @@ void read_spread(const SimulationInputs& base, const v1::Campaign& request, cons
   if (out.standard_uncertainty > 0) return;
   const bool is_surface = out.field->containing_type() == v1::Surface::descriptor();
   const std::string& owner = is_surface ? request.surface() : request.lubricant();
-  violations.push_back(
-      {path, fmt::format("{} has no range, and {} states no standard uncertainty of it; allowed: "
-                         "minimum and maximum{}",
-                         out.parameter, owner.empty() ? kDefaultSurface : owner,
-                         errs_with_a_law(*out.field)
-                             ? " (parameters of the laws of viscosity and density err together)"
-                             : "")});
+  violations.add(path,
+                 "{} has no range, and {} states no standard uncertainty of it; allowed: "
+                 "minimum and maximum{}",
+                 out.parameter, owner.empty() ? kDefaultSurface : owner,
+                 errs_with_a_law(*out.field)
+                     ? " (parameters of the laws of viscosity and density err together)"
+                     : "");
 }
 
 std::vector<PlacedFactor> stated_factors(const v1::Campaign& request, const SimulationInputs& base,
@@ -121,37 +119,36 @@ std::vector<PlacedFactor> stated_factors(const v1::Campaign& request, const Simu
     PlacedFactor factor{each.parameter(), find_candidate_parameter(each.parameter()), {}};
     factor.levels = each.levels();
     if (factor.field == nullptr) {
-      violations.push_back({path + ".parameter", unknown_parameter_text(each.parameter())});
+      violations.add(path + ".parameter", unknown_parameter_text(each.parameter()));
       continue;
     }
     if (std::string text = no_effect_text(request, each.parameter()); !text.empty()) {
-      violations.push_back({path + ".parameter", std::move(text)});
+      violations.add(path + ".parameter", std::move(text));
       continue;
     }
     if (!known.insert(each.parameter()).second) {
-      violations.push_back(
-          {path + ".parameter",
-           fmt::format("\"{}\" is listed twice; allowed: once", each.parameter())});
+      violations.add(path + ".parameter", "\"{}\" is listed twice; allowed: once",
+                     each.parameter());
     }
     if (each.has_minimum() != each.has_maximum()) {
-      violations.push_back({path + (each.has_minimum() ? ".maximum" : ".minimum"),
-                            "not set; allowed: both ends of the range, or neither"});
+      violations.add(path + (each.has_minimum() ? ".maximum" : ".minimum"),
+                     "not set; allowed: both ends of the range, or neither");
     } else if (each.has_minimum()) {
       read_range(each, path, factor, violations);
     } else if (is_grid) {
-      violations.push_back({path + ".minimum",
-                            "not set; allowed in a GRID: a range. A distribution by the standard "
-                            "uncertainty needs LATIN_HYPERCUBE or SOBOL"});
+      violations.add(path + ".minimum",
+                     "not set; allowed in a GRID: a range. A distribution by the standard "
+                     "uncertainty needs LATIN_HYPERCUBE or SOBOL");
     } else {
       read_spread(base, request, path, factor, violations);
     }
     if (is_grid ? each.levels() < 1 || each.levels() > kMaximumCandidates : each.levels() != 0) {
-      violations.push_back(
-          {path + ".levels",
-           is_grid ? fmt::format("levels = {}; allowed: 1 to {}", each.levels(), kMaximumCandidates)
-                   : fmt::format("levels = {}; allowed: 0, as only a GRID has levels; count states "
-                                 "the number of candidates",
-                                 each.levels())});
+      violations.add(
+          path + ".levels",
+          is_grid ? fmt::format("levels = {}; allowed: 1 to {}", each.levels(), kMaximumCandidates)
+                  : fmt::format("levels = {}; allowed: 0, as only a GRID has levels; count states "
+                                "the number of candidates",
+                                each.levels()));
     }
     out.push_back(std::move(factor));
   }
@@ -172,11 +169,10 @@ std::vector<PlacedFactor> uncertain_factors(const v1::Campaign& request,
     if (factor.standard_uncertainty > 0) out.push_back(std::move(factor));
   }
   if (out.empty()) {
-    violations.push_back(
-        {"candidate_design.factors",
-         fmt::format("not set, and {} and its surface state no standard uncertainty of a "
-                     "parameter; allowed: factors with ranges",
-                     request.lubricant())});
+    violations.add("candidate_design.factors",
+                   "not set, and {} and its surface state no standard uncertainty of a "
+                   "parameter; allowed: factors with ranges",
+                   request.lubricant());
   }
   return out;
 }
@@ -187,28 +183,26 @@ int design_size(const v1::CandidateDesign& design, const std::vector<PlacedFacto
   const std::string path = "candidate_design.";
   if (design.method() != v1::CandidateDesign::GRID) {
     if (design.count() < 1 || design.count() > kMaximumCandidates) {
-      violations.push_back({path + "count", fmt::format("count = {}; allowed: 1 to {}",
-                                                        design.count(), kMaximumCandidates)});
+      violations.add(path + "count", "count = {}; allowed: 1 to {}", design.count(),
+                     kMaximumCandidates);
     }
     return design.count();
   }
   if (design.count() != 0) {
-    violations.push_back({path + "count", fmt::format("count = {}; allowed: 0, as the levels of a "
-                                                      "GRID state its number of candidates",
-                                                      design.count())});
+    violations.add(path + "count",
+                   "count = {}; allowed: 0, as the levels of a GRID state its number of candidates",
+                   design.count());
   }
   if (design.seed() != 0) {
-    violations.push_back({path + "seed", fmt::format("seed = {}; allowed: 0, as a GRID has no "
-                                                     "random numbers",
-                                                     design.seed())});
+    violations.add(path + "seed", "seed = {}; allowed: 0, as a GRID has no random numbers",
+                   design.seed());
   }
   double size = 1;
   for (const PlacedFactor& each : factors) size *= std::max(1, each.levels);
   if (size <= kMaximumCandidates) return static_cast<int>(size);
-  violations.push_back(
-      {path + "factors", fmt::format("the grid has {} candidates; allowed: at most "
-                                     "{}. State fewer levels, or SOBOL",
-                                     number_text(size), kMaximumCandidates)});
+  violations.add(path + "factors",
+                 "the grid has {} candidates; allowed: at most {}. State fewer levels, or SOBOL",
+                 number_text(size), kMaximumCandidates);
   return 0;
 }
 
@@ -230,20 +224,18 @@ void set_columns(const Eigen::MatrixXd& shares, const std::vector<PlacedFactor>&
                  v1::Campaign& request, Violations& violations) {
   for (std::size_t k = 0; k < factors.size(); ++k) {
     const PlacedFactor& factor = factors[k];
-    const Constraint* row =
-        find_constraint(factor.field->containing_type()->name(), factor.field->name());
+    const Constraint* row = find_constraint(*factor.field);
     v1::CandidateColumn& column = *request.add_candidate_columns();
     column.set_path(factor.parameter);
     for (Eigen::Index i = 0; i < shares.rows(); ++i) {
       const double value = factor.value(shares(i, static_cast<Eigen::Index>(k)));
       column.add_values(value);
-      if (row == nullptr || (value >= row->minimum && value <= row->maximum)) continue;
-      violations.push_back(
-          {"candidate_design.factors",
-           fmt::format("by its standard uncertainty of {}, {} of candidate {} would be out of "
-                       "range: {}; state a range",
-                       number_text(factor.standard_uncertainty), factor.parameter, i,
-                       out_of_range_text(*row, value))});
+      if (row == nullptr || row->allows(value)) continue;
+      violations.add("candidate_design.factors",
+                     "by its standard uncertainty of {}, {} of candidate {} would be out of "
+                     "range: {}; state a range",
+                     number_text(factor.standard_uncertainty), factor.parameter, i,
+                     out_of_range_text(*row, value));
       break;
     }
   }
@@ -254,32 +246,31 @@ void make_design(v1::Campaign& request, const ResourceLookup& lookup, Violations
   v1::CandidateDesign& design = *request.mutable_candidate_design();
   check_message(design, "candidate_design", violations);
   if (design.method() == v1::CandidateDesign::METHOD_UNSPECIFIED) {
-    violations.push_back(
-        {"candidate_design.method", "not set; allowed: GRID, LATIN_HYPERCUBE or SOBOL"});
+    violations.add("candidate_design.method", "not set; allowed: GRID, LATIN_HYPERCUBE or SOBOL");
   }
   if (design.seed() < 0 || design.seed() > kLargestSeed) {
-    violations.push_back({"candidate_design.seed",
-                          fmt::format("seed = {}; allowed: 0 to {}", design.seed(), kLargestSeed)});
+    violations.add("candidate_design.seed", "seed = {}; allowed: 0 to {}", design.seed(),
+                   kLargestSeed);
   }
   if (design.algorithm_version() < 0 || design.algorithm_version() > kDesignVersion) {
-    violations.push_back({"candidate_design.algorithm_version",
-                          fmt::format("algorithm_version = {}; allowed: 0 (the newest one) to {}",
-                                      design.algorithm_version(), kDesignVersion)});
+    violations.add("candidate_design.algorithm_version",
+                   "algorithm_version = {}; allowed: 0 (the newest one) to {}",
+                   design.algorithm_version(), kDesignVersion);
   }
   const SimulationInputs base = base_of_design(request, lookup, violations);
   const bool is_grid = design.method() == v1::CandidateDesign::GRID;
   if (is_grid && design.factors().empty()) {
-    violations.push_back({"candidate_design.factors", "not set; allowed in a GRID: at least one"});
+    violations.add("candidate_design.factors", "not set; allowed in a GRID: at least one");
   }
   const std::vector<PlacedFactor> factors = !design.factors().empty() || is_grid
                                                 ? stated_factors(request, base, violations)
                                                 : uncertain_factors(request, base, violations);
   const int count = design_size(design, factors, violations);
   if (factors.size() > kMaximumFactors && design.factors().empty()) {
-    violations.push_back({"candidate_design.factors",
-                          fmt::format("not set, and {} parameters have a standard uncertainty; "
-                                      "allowed: at most {}. List those that differ",
-                                      factors.size(), kMaximumFactors)});
+    violations.add("candidate_design.factors",
+                   "not set, and {} parameters have a standard uncertainty; "
+                   "allowed: at most {}. List those that differ",
+                   factors.size(), kMaximumFactors);
   }
   if (violations.size() > before) return;
   design.set_algorithm_version(kDesignVersion);
@@ -333,16 +324,14 @@ void make_lubricants(v1::Campaign& request, const ResourceLookup& lookup,
     const std::vector<std::string> names =
         search ? search(request.lubricant_filter(), found) : std::vector<std::string>();
     for (Violation& each : found) {
-      violations.push_back({"lubricant_filter", std::move(each.description)});
+      violations.add("lubricant_filter", std::move(each.description));
     }
     if (!found.empty()) return;
     if (names.empty() || names.size() > static_cast<std::size_t>(kMaximumCandidateLubricants)) {
-      violations.push_back(
-          {"lubricant_filter",
-           fmt::format("\"{}\" is satisfied by {} lubricant{}; allowed: 1 to {}",
-                       plain_excerpt(request.lubricant_filter()),
-                       names.empty() ? "no" : "more than " + std::to_string(names.size() - 1),
-                       names.empty() ? "" : "s", kMaximumCandidateLubricants)});
+      violations.add("lubricant_filter", "\"{}\" is satisfied by {} lubricant{}; allowed: 1 to {}",
+                     plain_excerpt(request.lubricant_filter()),
+                     names.empty() ? "no" : "more than " + std::to_string(names.size() - 1),
+                     names.empty() ? "" : "s", kMaximumCandidateLubricants);
       return;
     }
     *request.mutable_candidate_lubricants() = {names.begin(), names.end()};
@@ -351,10 +340,10 @@ void make_lubricants(v1::Campaign& request, const ResourceLookup& lookup,
   for (int i = 0; i < request.candidate_attributes_size(); ++i) {
     const std::string& name = request.candidate_attributes(i).name();
     if (!is_made_attribute(name)) continue;
-    violations.push_back({fmt::format("candidate_attributes[{}].name", i),
-                          fmt::format("\"{}\": the server makes this attribute where candidates "
-                                      "are lubricants; choose another name",
-                                      plain_excerpt(name))});
+    violations.add(fmt::format("candidate_attributes[{}].name", i),
+                   "\"{}\": the server makes this attribute where candidates "
+                   "are lubricants; choose another name",
+                   plain_excerpt(name));
   }
   const auto base = find_resource<v1::Lubricant>(lookup, request.lubricant(), kLubricants,
                                                  "lubricant", violations);
@@ -409,9 +398,9 @@ void make_candidates(v1::Campaign& request, const ResourceLookup& lookup,
   if (!request.candidate_lubricants().empty()) stated.emplace_back("candidate_lubricants");
   if (!request.lubricant_filter().empty()) stated.emplace_back("lubricant_filter");
   if (stated.size() > 1) {
-    violations.push_back({stated[1], fmt::format("set beside {}; allowed: one of the two. Each "
-                                                 "states what the candidates are",
-                                                 stated[0])});
+    violations.add(stated[1],
+                   "set beside {}; allowed: one of the two. Each states what the candidates are",
+                   stated[0]);
     return;
   }
   if (request.candidate_lubricants_size() > kMaximumCandidateLubricants) return;  // check_message()
@@ -436,17 +425,14 @@ v1::Campaign lubricant_candidates(const google::protobuf::RepeatedPtrField<std::
     if (!each) continue;
     const auto [at, is_new] = positions.emplace(each->revision_name, i);
     if (!is_new) {
-      violations.push_back({path, fmt::format("{} is listed twice, first as candidate_lubricants"
-                                              "[{}]; allowed: once",
-                                              each->revision_name, at->second)});
+      violations.add(path, "{} is listed twice, first as candidate_lubricants[{}]; allowed: once",
+                     each->revision_name, at->second);
     } else if (each->resource->has_improved_yasutomi() != base.has_improved_yasutomi()) {
-      violations.push_back(
-          {path,
-           fmt::format("{} {} improved_yasutomi, unlike the base; allowed: lubricants with "
-                       "one law of viscosity under pressure. Screen the others in a "
-                       "campaign of their own",
-                       each->revision_name,
-                       each->resource->has_improved_yasutomi() ? "follows" : "does not follow")});
+      violations.add(path,
+                     "{} {} improved_yasutomi, unlike the base; allowed: lubricants with one law "
+                     "of viscosity under pressure. Screen the others in a campaign of their own",
+                     each->revision_name,
+                     each->resource->has_improved_yasutomi() ? "follows" : "does not follow");
     }
     *out.add_candidate_lubricants() = each->revision_name;
     found.push_back(std::move(each->resource));

@@ -36,9 +36,8 @@ v1::EvaluateRigRequest base_rig_request(const v1::Campaign& campaign) {
 void refuse_axle_fields(const v1::Campaign& campaign, Violations& violations) {
   const auto refuse = [&](bool is_set, const char* field, const char* what) {
     if (!is_set) return;
-    violations.push_back(
-        {field,
-         fmt::format("set together with rig; allowed: one of the two, as a rig has no {}", what)});
+    violations.add(field, "set together with rig; allowed: one of the two, as a rig has no {}",
+                   what);
   };
   refuse(!campaign.gear_set().empty(), "gear_set", "gear set");
   refuse(!campaign.vehicle().empty(), "vehicle", "vehicle");
@@ -94,8 +93,7 @@ std::string no_effect_text(const v1::Campaign& campaign, const std::string& path
     return {};
   }
   return fmt::format(
-      "\"{}\" has no effect: rig.composite_rms_height_metres replaces it; state one "
-      "of the two",
+      "\"{}\" has no effect: rig.composite_rms_height_metres replaces it; state one of the two",
       path);
 }
 
@@ -113,25 +111,25 @@ std::optional<RigPoints> read_rig_points(const v1::Campaign& campaign,
   points.columns = read_columns(columns, violations);
   for (int i = 0; i < columns.candidate_columns_size(); ++i) {
     const std::string text = no_effect_text(campaign, columns.candidate_columns(i).path());
-    if (!text.empty()) violations.push_back({fmt::format("candidate_columns[{}].path", i), text});
+    if (!text.empty()) violations.add(fmt::format("candidate_columns[{}].path", i), text);
   }
   Violations of_rig;
   auto rig = read_rig(base_rig_request(campaign), lookup, of_rig, kMaximumCampaignConditions);
   for (const Violation& each : of_rig) {
     const bool is_of_campaign = each.field == "lubricant" || each.field == "surface" ||
                                 each.field.starts_with("model_options");
-    violations.push_back({is_of_campaign ? each.field : "rig." + each.field, each.description});
+    violations.add(is_of_campaign ? each.field : "rig." + each.field, each.description);
   }
   if (!points.columns.empty()) {
     points.candidates = static_cast<int>(points.columns.front().values.size());
   }
   points.conditions = condition_count(campaign);
   if (points.conditions > 0 && points.candidates > most / points.conditions) {
-    violations.push_back(
-        {"rig", fmt::format("{} candidates at {} conditions are {} points; allowed: at most {} in "
-                            "one campaign; make several",
-                            points.candidates, points.conditions,
-                            static_cast<long>(points.candidates) * points.conditions, most)});
+    violations.add("rig",
+                   "{} candidates at {} conditions are {} points; allowed: at most {} in "
+                   "one campaign; make several",
+                   points.candidates, points.conditions,
+                   static_cast<long>(points.candidates) * points.conditions, most);
   }
   if (rig) check_law_columns(columns, *rig->lubricant, violations);
   if (!rig || violations.size() > before) return std::nullopt;

@@ -1,7 +1,5 @@
 #include "server/simulation/candidate_figures.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -24,10 +22,10 @@ std::vector<double> condition_weights(const google::protobuf::RepeatedField<doub
                                       const v1::Campaign& campaign, Violations& violations) {
   const int conditions = condition_count(campaign);
   if (!stated.empty() && stated.size() != conditions) {
-    violations.push_back({"condition_weights",
-                          fmt::format("{} weights; allowed: one for each of the {} conditions, or "
-                                      "none for those of the campaign",
-                                      stated.size(), conditions)});
+    violations.add("condition_weights",
+                   "{} weights; allowed: one for each of the {} conditions, or "
+                   "none for those of the campaign",
+                   stated.size(), conditions);
     return {};
   }
   const auto& usual = stated.empty() ? campaign.condition_weights() : stated;

@@ -55,7 +55,7 @@ const v1::CandidateAttribute* find_attribute(const v1::Campaign& table, const st
 }
 
 double within_limits(const FieldDescriptor& field, double value) {
-  const Constraint* row = find_constraint(field.containing_type()->name(), field.name());
+  const Constraint* row = find_constraint(field);
   return row == nullptr ? value : std::clamp(value, row->minimum, row->maximum);
 }
 
@@ -99,20 +99,18 @@ void check_uncertainties(const v1::RankCandidatesRequest& request, Violations& v
     const v1::ParameterUncertainty& each = request.uncertainties(i);
     const std::string path = fmt::format("uncertainties[{}]", i);
     if (find_candidate_parameter(each.parameter()) == nullptr) {
-      violations.push_back({path + ".parameter", unknown_parameter_text(each.parameter())});
+      violations.add(path + ".parameter", unknown_parameter_text(each.parameter()));
     } else if (!paths.insert(each.parameter()).second) {
-      violations.push_back(
-          {path + ".parameter",
-           fmt::format("\"{}\" is listed twice; allowed: once", each.parameter())});
+      violations.add(path + ".parameter", "\"{}\" is listed twice; allowed: once",
+                     each.parameter());
     }
     const bool is_relative = each.has_relative_uncertainty();
     const double value = is_relative ? each.relative_uncertainty() : each.absolute_uncertainty();
     if (!(value > 0)) {
-      violations.push_back(
-          {path + (is_relative ? ".relative_uncertainty" : ".absolute_uncertainty"),
-           each.form_case() == v1::ParameterUncertainty::FORM_NOT_SET
-               ? std::string("not set; allowed: this or relative_uncertainty, above 0")
-               : fmt::format("{}; allowed: above 0", number_text(value))});
+      violations.add(path + (is_relative ? ".relative_uncertainty" : ".absolute_uncertainty"),
+                     each.form_case() == v1::ParameterUncertainty::FORM_NOT_SET
+                         ? std::string("not set; allowed: this or relative_uncertainty, above 0")
+                         : fmt::format("{}; allowed: above 0", number_text(value)));
     }
   }
 }

@@ -30,7 +30,7 @@ std::optional<v1::Lubricant> read_contact(const v1::EvaluateContactRequest& requ
         find_resource<v1::Lubricant>(lookup, request.lubricant(), kLubricants, path, violations);
     if (found) lubricant = *found->resource;
   } else {
-    violations.push_back({"fluid", "not set; allowed: lubricant or lubricant_parameters"});
+    violations.add("fluid", "not set; allowed: lubricant or lubricant_parameters");
   }
   if (lubricant) {
     check_law_options(*lubricant, request.model_options(), "model_options", violations);

@@ -60,7 +60,7 @@ void check_succession(const v1::EvaluateCycleRequest& request, Violations& viola
   int count = 0;
   const auto add = [&](int place, const char* field, const std::string& text) {
     if (++count > kMaximumReportedElements) return;
-    violations.push_back({fmt::format("places[{}].{}", place, field), text});
+    violations.add(fmt::format("places[{}].{}", place, field), text);
   };
   const Constraint& limit =
       *find_constraint("DriveCycleSnapshot", "acceleration_metres_per_second_squared");
@@ -88,28 +88,27 @@ void check_succession(const v1::EvaluateCycleRequest& request, Violations& viola
     }
   }
   if (count > kMaximumReportedElements) {
-    violations.push_back({"places", fmt::format("{} more places do not follow their predecessor",
-                                                count - kMaximumReportedElements)});
+    violations.add("places", "{} more places do not follow their predecessor",
+                   count - kMaximumReportedElements);
   }
 }
 
 void check_cycle(const v1::EvaluateCycleRequest& request, Violations& violations) {
   const int places = request.places_size();
   if (places == 0 && request.named_cycle() == v1::NAMED_CYCLE_UNSPECIFIED) {
-    violations.push_back({"places", "not set; allowed: two places or more, or a named_cycle"});
+    violations.add("places", "not set; allowed: two places or more, or a named_cycle");
   }
   if (places > 0 && request.named_cycle() != v1::NAMED_CYCLE_UNSPECIFIED) {
-    violations.push_back({"places", "set together with named_cycle; allowed: one of the two"});
+    violations.add("places", "set together with named_cycle; allowed: one of the two");
   }
-  if (places == 1) violations.push_back({"places", "1 place; allowed: two places or more"});
+  if (places == 1) violations.add("places", "1 place; allowed: two places or more");
   if (places > 1) check_succession(request, violations);
 }
 
 void check_cycle_lubricants(const v1::EvaluateCycleRequest& request, Violations& violations) {
   const int lubricants = request.lubricants_size();
   if (lubricants > 0 && lubricants <= kMostCycleLubricants) return;
-  violations.push_back({"lubricants", fmt::format("{} lubricants; allowed: 1 to {}", lubricants,
-                                                  kMostCycleLubricants)});
+  violations.add("lubricants", "{} lubricants; allowed: 1 to {}", lubricants, kMostCycleLubricants);
 }
 
 /// Returns the pieces of the cycle, or none and a violation if they are too many.
@@ -119,19 +118,18 @@ std::vector<CyclePiece> cut_cycle(const v1::EvaluateCycleRequest& request, Viola
   std::vector<CyclePiece> out;
   if (duration <= kMaximumCyclePieces) out = pieces_of(cycle);
   if (out.empty() || out.size() > kMaximumCyclePieces) {
-    violations.push_back(
-        {"places", fmt::format("{} places over {} s are more than {} pieces of at most 1 s; send "
-                               "the parts of the cycle in several requests",
-                               request.places_size(), duration, kMaximumCyclePieces)});
+    violations.add("places",
+                   "{} places over {} s are more than {} pieces of at most 1 s; send "
+                   "the parts of the cycle in several requests",
+                   request.places_size(), duration, kMaximumCyclePieces);
     return {};
   }
   const std::size_t points = out.size() * static_cast<std::size_t>(request.lubricants_size());
   if (request.point_by_point() && points > kMaximumCyclePoints) {
-    violations.push_back(
-        {"point_by_point",
-         fmt::format("true; {} pieces of {} lubricants are {} points; allowed: at most {} in one "
-                     "request; send several, or let the server make a map",
-                     out.size(), request.lubricants_size(), points, kMaximumCyclePoints)});
+    violations.add("point_by_point",
+                   "true; {} pieces of {} lubricants are {} points; allowed: at most {} in one "
+                   "request; send several, or let the server make a map",
+                   out.size(), request.lubricants_size(), points, kMaximumCyclePoints);
   }
   return out;
 }

@@ -1,7 +1,5 @@
 #include "server/simulation/input_errors.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <set>
 #include <string_view>
@@ -34,7 +32,7 @@ constexpr char kDensityInputs[] =
 
 /// Returns the value moved into the allowed range of its field.
 double within_range(const FieldDescriptor& field, double value) {
-  const Constraint* row = find_constraint(field.containing_type()->name(), field.name());
+  const Constraint* row = find_constraint(field);
   return row == nullptr ? value : std::clamp(value, row->minimum, row->maximum);
 }
 

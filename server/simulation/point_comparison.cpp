@@ -310,23 +310,21 @@ v1::EvaluatePointsRequest points_of(const v1::ComparePointsRequest& request,
 void check_counts(const v1::ComparePointsRequest& request, int draws, Violations& violations) {
   const int lubricants = request.lubricants_size(), conditions = request.conditions_size();
   if (lubricants == 0 || lubricants > kMostComparedLubricants) {
-    violations.push_back({"lubricants", fmt::format("{} lubricants; allowed: 1 to {}", lubricants,
-                                                    kMostComparedLubricants)});
+    violations.add("lubricants", "{} lubricants; allowed: 1 to {}", lubricants,
+                   kMostComparedLubricants);
   }
   const int weights = request.condition_weights_size();
   if (weights != 0 && weights != conditions) {
-    violations.push_back(
-        {"condition_weights",
-         fmt::format("{} weights of {} conditions; allowed: one for each condition, or none",
-                     weights, conditions)});
+    violations.add("condition_weights",
+                   "{} weights of {} conditions; allowed: one for each condition, or none", weights,
+                   conditions);
   }
   const long points = static_cast<long>(lubricants) * conditions * (draws + 1L);
   if (points > kMaximumComparedPoints) {
-    violations.push_back(
-        {"conditions",
-         fmt::format("{} lubricants at {} conditions with {} draws are {} points; allowed: at "
-                     "most {} in one request; send several, or take fewer draws",
-                     lubricants, conditions, draws, points, kMaximumComparedPoints)});
+    violations.add("conditions",
+                   "{} lubricants at {} conditions with {} draws are {} points; allowed: at "
+                   "most {} in one request; send several, or take fewer draws",
+                   lubricants, conditions, draws, points, kMaximumComparedPoints);
   }
 }
 

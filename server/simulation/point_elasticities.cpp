@@ -82,10 +82,9 @@ void check_names(const Strings& names, const std::map<std::string_view, Value>& 
     if (!allowed.contains(name)) {
       std::vector<std::string> all;
       for (const auto& [each, value] : allowed) all.emplace_back(each);
-      violations.push_back(
-          {at, fmt::format("\"{}\" is no {}{}", plain_excerpt(name), what, meant_text(name, all))});
+      violations.add(at, "\"{}\" is no {}{}", plain_excerpt(name), what, meant_text(name, all));
     } else if (!found.insert(name).second) {
-      violations.push_back({at, fmt::format("\"{}\" is listed twice; allowed: once", name)});
+      violations.add(at, "\"{}\" is listed twice; allowed: once", name);
     }
   }
 }
@@ -100,8 +99,8 @@ std::vector<Elasticity> read_elasticities(const v1::EvaluatePointsRequest& reque
   check_names(request.elasticity_figures(), differentiated_figures(), "elasticity_figures",
               "figure that is differentiated", violations);
   if (request.elasticity_parameters().empty() && !request.elasticity_figures().empty()) {
-    violations.push_back(
-        {"elasticity_parameters", "not set; allowed: at least one with elasticity_figures"});
+    violations.add("elasticity_parameters",
+                   "not set; allowed: at least one with elasticity_figures");
   }
   if (violations.size() > before) return {};
   Strings figures = request.elasticity_figures();

@@ -52,14 +52,14 @@ const std::map<std::string, const FieldDescriptor*>& candidate_parameters() {
 /// Checks the values of a column against the allowed range of its parameter.
 void check_values(const v1::CandidateColumn& column, const FieldDescriptor& field,
                   const std::string& path, Violations& violations) {
-  const Constraint* row = find_constraint(field.containing_type()->name(), field.name());
+  const Constraint* row = find_constraint(field);
   if (row == nullptr) return;  // check_message() has found that the values are finite
   int reported = 0;
   for (int k = 0; k < column.values_size() && reported < kMaximumReportedElements; ++k) {
     const double value = column.values(k);
-    if (!std::isfinite(value) || (value >= row->minimum && value <= row->maximum)) continue;
+    if (!std::isfinite(value) || row->allows(value)) continue;
     ++reported;
-    violations.push_back({fmt::format("{}.values[{}]", path, k), out_of_range_text(*row, value)});
+    violations.add(fmt::format("{}.values[{}]", path, k), out_of_range_text(*row, value));
   }
 }
 
@@ -320,20 +320,18 @@ std::vector<PointEvaluation::Column> read_columns(const v1::EvaluatePointsReques
     const std::string path = fmt::format("candidate_columns[{}]", i);
     const auto found = candidate_parameters().find(column.path());
     if (found == candidate_parameters().end()) {
-      violations.push_back({path + ".path", unknown_parameter_text(column.path())});
+      violations.add(path + ".path", unknown_parameter_text(column.path()));
       continue;
     }
     if (!paths.insert(column.path()).second) {
-      violations.push_back(
-          {path + ".path", fmt::format("\"{}\" is listed twice; allowed: once", column.path())});
+      violations.add(path + ".path", "\"{}\" is listed twice; allowed: once", column.path());
     }
     const int rows = request.candidate_columns(0).values_size();
     if (column.values_size() != rows || rows == 0) {
-      violations.push_back(
-          {path + ".values",
-           fmt::format("{} values; allowed: one for each candidate, at least one and as many as in "
-                       "candidate_columns[0], which has {}",
-                       column.values_size(), rows)});
+      violations.add(path + ".values",
+                     "{} values; allowed: one for each candidate, at least one and as many as in "
+                     "candidate_columns[0], which has {}",
+                     column.values_size(), rows);
     }
     check_values(column, *found->second, path, violations);
     out.push_back({found->second, {column.values().begin(), column.values().end()}});
@@ -349,10 +347,9 @@ void check_law_columns(const v1::EvaluatePointsRequest& request, const v1::Lubri
     const bool is_of_roelands = path.starts_with("lubricant.pressure_viscosity_");
     const bool follows_law = base.has_improved_yasutomi();
     if (!(follows_law ? is_of_roelands : is_of_law)) continue;
-    violations.push_back(
-        {fmt::format("candidate_columns[{}].path", i),
-         fmt::format("\"{}\" has no effect: {} {} improved_yasutomi", path, request.lubricant(),
-                     follows_law ? "follows" : "does not follow")});
+    violations.add(fmt::format("candidate_columns[{}].path", i),
+                   "\"{}\" has no effect: {} {} improved_yasutomi", path, request.lubricant(),
+                   follows_law ? "follows" : "does not follow");
   }
 }
 
@@ -368,13 +365,12 @@ std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& requ
   if (!out.columns.empty()) out.candidates = static_cast<int>(out.columns.front().values.size());
   out.conditions = request.conditions_size();
   if (out.conditions == 0) {
-    violations.push_back({"conditions", "not set; allowed: at least one"});
+    violations.add("conditions", "not set; allowed: at least one");
   } else if (out.candidates > most / out.conditions) {
-    violations.push_back(
-        {"conditions",
-         fmt::format("{} candidates at {} conditions are {} points; allowed: at most {} {}",
-                     out.candidates, out.conditions,
-                     static_cast<long>(out.candidates) * out.conditions, most, remedy)});
+    violations.add("conditions",
+                   "{} candidates at {} conditions are {} points; allowed: at most {} {}",
+                   out.candidates, out.conditions,
+                   static_cast<long>(out.candidates) * out.conditions, most, remedy);
   }
   // The conditions are valid by now, so that what the base adds is about the base.
   const v1::PointCondition usual = [] {

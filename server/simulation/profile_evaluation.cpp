@@ -44,13 +44,12 @@ void check_steps(const v1::EvaluateProfilesRequest& request, int heights, Violat
     const int most = std::max(1, heights / kFewestHeights);
     const int before = i == 0 ? 0 : request.sampling_steps(i - 1);
     if (step >= 1 && step <= most && step > before) continue;
-    violations.push_back(
-        {fmt::format("sampling_steps[{}]", i),
-         step >= 1 && step <= most
-             ? fmt::format("{}; allowed: more than the one before, {}", step, before)
-             : fmt::format("{}; allowed: 1 to {}, so that {} of the {} heights of the shortest "
-                           "profile are left (eq 45)",
-                           step, most, kFewestHeights, heights)});
+    violations.add(fmt::format("sampling_steps[{}]", i),
+                   step >= 1 && step <= most
+                       ? fmt::format("{}; allowed: more than the one before, {}", step, before)
+                       : fmt::format("{}; allowed: 1 to {}, so that {} of the {} heights of the "
+                                     "shortest profile are left (eq 45)",
+                                     step, most, kFewestHeights, heights));
   }
 }
 
@@ -153,7 +152,7 @@ std::optional<v1::EvaluateProfilesResponse> evaluate_profiles(
                                          : sampled_surface(profiles, 1, as_published);
     add_profile_warnings(whole.roughness(), out);
   } catch (const Refusal& refusal) {
-    violations.push_back({"profiles", refusal.what()});
+    violations.add("profiles", refusal.what());
     return std::nullopt;
   }
   return out;

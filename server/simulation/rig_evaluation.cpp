@@ -110,15 +110,13 @@ double combinations_of(const v1::RigGrid& grid) {
 /// Adds a violation for each list that is missing or too much, and for too many combinations.
 void check_grid(const v1::RigGrid& grid, int most, Violations& violations) {
   if (grid.loads_newtons().empty() == grid.mean_pressures_pascals().empty()) {
-    violations.push_back(
-        {"grid.loads_newtons",
-         fmt::format("{}; allowed: either loads or mean pressures",
-                     grid.loads_newtons().empty() ? "not set, nor are mean_pressures_pascals"
-                                                  : "set together with mean_pressures_pascals")});
+    violations.add("grid.loads_newtons", "{}; allowed: either loads or mean pressures",
+                   grid.loads_newtons().empty() ? "not set, nor are mean_pressures_pascals"
+                                                : "set together with mean_pressures_pascals");
   }
   const auto count = [&](const char* field, int values) {
     if (values == 0) {
-      violations.push_back({std::string("grid.") + field, "not set; allowed: at least one value"});
+      violations.add(std::string("grid.") + field, "not set; allowed: at least one value");
     }
   };
   count("supply_temperatures_celsius", grid.supply_temperatures_celsius_size());
@@ -126,8 +124,7 @@ void check_grid(const v1::RigGrid& grid, int most, Violations& violations) {
   count("slide_roll_ratios_percent", grid.slide_roll_ratios_percent_size());
   const double combinations = combinations_of(grid);
   if (combinations > most) {
-    violations.push_back(
-        {"grid", fmt::format("{} combinations; allowed: at most {}", combinations, most)});
+    violations.add("grid", "{} combinations; allowed: at most {}", combinations, most);
   }
 }
 
@@ -138,11 +135,11 @@ void check_draws(const v1::EvaluateRigRequest& request, Violations& violations) 
   if (request.draws() <= 0 || rows > kMaximumRigConditions) return;
   const long contacts = std::lround(rows) * (request.draws() + 1L);
   if (contacts <= kMaximumRigContacts) return;
-  violations.push_back(
-      {"draws", fmt::format("{} draws of {} rows are {} contacts; allowed: at most {}, rows times "
-                            "(draws + 1): take at most {} draws, or send fewer rows at once",
-                            request.draws(), rows, contacts, kMaximumRigContacts,
-                            kMaximumRigContacts / std::lround(rows) - 1)});
+  violations.add("draws",
+                 "{} draws of {} rows are {} contacts; allowed: at most {}, rows times "
+                 "(draws + 1): take at most {} draws, or send fewer rows at once",
+                 request.draws(), rows, contacts, kMaximumRigContacts,
+                 kMaximumRigContacts / std::lround(rows) - 1);
 }
 
 void check_grid_loads(const v1::EvaluateRigRequest& request, Violations& violations) {
@@ -152,10 +149,9 @@ void check_grid_loads(const v1::EvaluateRigRequest& request, Violations& violati
     const double load =
         loads[static_cast<std::size_t>(grid.loads_newtons_size()) + static_cast<std::size_t>(i)];
     if (load >= kLeastRigLoad && load <= kMostRigLoad) continue;
-    violations.push_back(
-        {fmt::format("grid.mean_pressures_pascals[{}]", i),
-         fmt::format("{} Pa needs a load of {:.4g} N; allowed: {} to {} N",
-                     grid.mean_pressures_pascals(i), load, kLeastRigLoad, kMostRigLoad)});
+    violations.add(fmt::format("grid.mean_pressures_pascals[{}]", i),
+                   "{} Pa needs a load of {:.4g} N; allowed: {} to {} N",
+                   grid.mean_pressures_pascals(i), load, kLeastRigLoad, kMostRigLoad);
   }
 }
 
@@ -257,13 +253,13 @@ std::optional<RigEvaluation> read_rig(const v1::EvaluateRigRequest& request,
   if (request.has_grid()) {
     check_grid(request.grid(), most, violations);
     if (!request.conditions().empty()) {
-      violations.push_back({"conditions", "set together with grid; allowed: one of the two"});
+      violations.add("conditions", "set together with grid; allowed: one of the two");
     }
   } else if (request.conditions().empty()) {
-    violations.push_back({"conditions", "not set; allowed: at least one"});
+    violations.add("conditions", "not set; allowed: at least one");
   } else if (request.conditions_size() > most) {
-    violations.push_back({"conditions", fmt::format("{} conditions; allowed: at most {}",
-                                                    request.conditions_size(), most)});
+    violations.add("conditions", "{} conditions; allowed: at most {}", request.conditions_size(),
+                   most);
   }
   check_draws(request, violations);
   RigEvaluation out{};  // zeros: smooth specimens
@@ -280,9 +276,9 @@ std::optional<RigEvaluation> read_rig(const v1::EvaluateRigRequest& request,
       out.surface_revision = surface->revision_name;
     }
   } else if (request.composite_rms_height_metres() != 0) {
-    violations.push_back({"composite_rms_height_metres",
-                          "set without a surface; allowed: 0, which means smooth specimens, or a "
-                          "surface whose height it replaces"});
+    violations.add("composite_rms_height_metres",
+                   "set without a surface; allowed: 0, which means smooth specimens, or a "
+                   "surface whose height it replaces");
   }
   if (lubricant) {
     check_law_options(*lubricant->resource, request.model_options(), "model_options", violations);

@@ -1,7 +1,5 @@
 #include "server/simulation/simulation_inputs.h"
 
-#include <fmt/format.h>
-
 #include <numbers>
 #include <utility>
 
@@ -14,6 +12,7 @@
 #include "server/simulation/fluid_grounds.h"
 #include "server/simulation/solver_defaults.h"
 #include "server/simulation/study_checks.h"
+#include "server/support/value_of.h"
 
 namespace tribodyn::server {
 namespace {
@@ -113,8 +112,8 @@ void check_study(const v1::Simulation& request, const std::string& path, Violati
     check_curve(request.inefficiency_curve(), request.solver_options(),
                 join_path(path, "inefficiency_curve"), violations);
   } else {
-    violations.push_back(
-        {join_path(path, "study"), "not set; allowed: operating_point or inefficiency_curve"});
+    violations.add(join_path(path, "study"),
+                   "not set; allowed: operating_point or inefficiency_curve");
   }
 }
 
@@ -138,35 +137,20 @@ OperatingCondition condition(const v1::OperatingPointStudy& study) {
   return out;
 }
 
-PointModel point_model(v1::PointModel model) {
-  switch (model) {
-    case v1::POINT_MODEL_FULL:
-      return PointModel::kFull;
-    case v1::POINT_MODEL_QUASI_STATIC:
-      return PointModel::kQuasiStatic;
-    default:
-      return PointModel::kAutomatic;
-  }
-}
-
-SteadyStateMethod steady_state_method(v1::SteadyStateMethod method) {
-  switch (method) {
-    case v1::STEADY_STATE_METHOD_SHOOTING:
-      return SteadyStateMethod::kShooting;
-    case v1::STEADY_STATE_METHOD_MARCH:
-      return SteadyStateMethod::kMarch;
-    default:
-      return SteadyStateMethod::kAutomatic;
-  }
-}
+constexpr std::pair<v1::PointModel, PointModel> kModels[] = {
+    {v1::POINT_MODEL_FULL, PointModel::kFull},
+    {v1::POINT_MODEL_QUASI_STATIC, PointModel::kQuasiStatic}};
+constexpr std::pair<v1::SteadyStateMethod, SteadyStateMethod> kMethods[] = {
+    {v1::STEADY_STATE_METHOD_SHOOTING, SteadyStateMethod::kShooting},
+    {v1::STEADY_STATE_METHOD_MARCH, SteadyStateMethod::kMarch}};
 
 PointOptions point_options(const v1::SolverOptions& solver, v1::PointModel model,
                            v1::PointStart start) {
   PointOptions out;
-  out.model = point_model(model);
+  out.model = value_of(kModels, model, PointModel::kAutomatic);
   out.start = start == v1::POINT_START_LARGE_VIBRATION ? PointStart::kLargeVibration
                                                        : PointStart::kQuasiStatic;
-  out.method = steady_state_method(solver.method());
+  out.method = value_of(kMethods, solver.method(), SteadyStateMethod::kAutomatic);
   out.tolerance = solver.tolerance();
   out.march_step_tolerance = solver.march_step_tolerance();
   out.march_settling_tolerance = solver.march_settling_tolerance();
@@ -205,7 +189,7 @@ std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
   check_study(asked, path, violations);
   check_model_options(asked.model_options(), join_path(path, "model_options"), violations);
   if (asked.labels_size() > kMaximumLabels) {
-    violations.push_back({join_path(path, "labels"), "more than 64 entries"});
+    violations.add(join_path(path, "labels"), "more than 64 entries");
   } else {
     check_labels(asked.labels(), join_path(path, "labels"), violations);
   }
@@ -231,11 +215,10 @@ std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
     if (auto sheared = sheared_lubricant(*inputs.lubricant)) {
       inputs.lubricant = std::make_shared<const v1::Lubricant>(*std::move(sheared));
     } else {
-      violations.push_back(
-          {join_path(path, "sheared_lubricant"),
-           fmt::format("{} states no viscosity after the shear test; needs its measurements."
-                       "sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second",
-                       lubricant)});
+      violations.add(join_path(path, "sheared_lubricant"),
+                     "{} states no viscosity after the shear test; needs its measurements."
+                     "sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second",
+                     lubricant);
     }
   }
   if (!lubricant.empty()) {

@@ -39,28 +39,26 @@ void check_speed_range(const v1::InefficiencyCurveStudy& study, const std::strin
   const double step = study.speed_step_kilometres_per_hour();
   const auto missing = [&](const char* field, double value) {
     if (value == 0) {
-      violations.push_back(
-          {join_path(path, field),
-           fmt::format("{} is not set; first, last and step need each other", field)});
+      violations.add(join_path(path, field), "{} is not set; first, last and step need each other",
+                     field);
     }
   };
   missing("first_speed_kilometres_per_hour", first);
   missing("last_speed_kilometres_per_hour", last);
   missing("speed_step_kilometres_per_hour", step);
   if (first != 0 && last != 0 && last < first) {
-    violations.push_back(
-        {join_path(path, "last_speed_kilometres_per_hour"),
-         fmt::format("last_speed_kilometres_per_hour = {} km/h; allowed: at least the first speed, "
-                     "{} km/h; for a sweep downwards set direction",
-                     last, first)});
+    violations.add(join_path(path, "last_speed_kilometres_per_hour"),
+                   "last_speed_kilometres_per_hour = {} km/h; allowed: at least the first speed, "
+                   "{} km/h; for a sweep downwards set direction",
+                   last, first);
   }
 }
 
 void check_columns(const v1::HistoryRequest& history, const std::string& path,
                    Violations& violations) {
   if (history.columns().empty()) {
-    violations.push_back({join_path(path, "columns"),
-                          "columns is empty; name at least one, or leave history unset"});
+    violations.add(join_path(path, "columns"),
+                   "columns is empty; name at least one, or leave history unset");
   }
   std::set<std::string> seen;
   const std::vector<std::string> known = history_column_names();
@@ -69,9 +67,9 @@ void check_columns(const v1::HistoryRequest& history, const std::string& path,
     const std::string& name = history.columns(i);
     const std::string element = fmt::format("{}.columns[{}]", path, i);
     if (!history_column(name)) {
-      violations.push_back({element, fmt::format("unknown column{}", meant_text(name, known))});
+      violations.add(element, "unknown column{}", meant_text(name, known));
     } else if (!seen.insert(name).second) {
-      violations.push_back({element, fmt::format("\"{}\" is named twice", name)});
+      violations.add(element, "\"{}\" is named twice", name);
     }
   }
 }
@@ -89,10 +87,8 @@ void check_history(const v1::HistoryRequest& history, const std::string& path,
                                                                : history.samples_per_mesh_cycle();
   const double values = cycles * samples * columns;
   if (values > kMaximumHistoryValues) {
-    violations.push_back(
-        {path,
-         fmt::format("{} cycles of {} samples in {} columns are {} values; allowed: at most {}",
-                     cycles, samples, columns, values, kMaximumHistoryValues)});
+    violations.add(path, "{} cycles of {} samples in {} columns are {} values; allowed: at most {}",
+                   cycles, samples, columns, values, kMaximumHistoryValues);
   }
 }
 
@@ -105,30 +101,28 @@ void check_fluid_at_inlet(const v1::Lubricant& lubricant, double sump_temperatur
   const double reference = lubricant.vogel_reference_temperature_kelvin();
   const double measured = lubricant.pressure_viscosity_temperature_kelvin();
   if (inlet <= reference) {
-    violations.push_back(
-        {path, fmt::format("T_0,ref = {} K; allowed: below the inlet temperature, {:.6g} K (eq 34)",
-                           reference, inlet)});
+    violations.add(path, "T_0,ref = {} K; allowed: below the inlet temperature, {:.6g} K (eq 34)",
+                   reference, inlet);
   }
   if (!lubricant.has_improved_yasutomi() && measured <= reference) {
-    violations.push_back(
-        {path, fmt::format("T_0,ref = {} K; allowed: below the temperature of alpha*, {} K (eq 33)",
-                           reference, measured)});
+    violations.add(path, "T_0,ref = {} K; allowed: below the temperature of alpha*, {} K (eq 33)",
+                   reference, measured);
   }
   const double density = lubricant.density_at_zero_kelvin_kilograms_per_cubic_metre() +
                          lubricant.density_slope_kilograms_per_cubic_metre_kelvin() * inlet;
   if (density <= 0) {
-    violations.push_back(
-        {path, fmt::format("density at the inlet temperature {:.6g} K is {:.6g} kg/m3; "
-                           "allowed: positive (eq 26)",
-                           inlet, density)});
+    violations.add(path,
+                   "density at the inlet temperature {:.6g} K is {:.6g} kg/m3; "
+                   "allowed: positive (eq 26)",
+                   inlet, density);
   }
 }
 
 void check_operating_point(const v1::OperatingPointStudy& study, const std::string& path,
                            Violations& violations) {
   if (study.condition_case() == v1::OperatingPointStudy::CONDITION_NOT_SET) {
-    violations.push_back({join_path(path, "condition"),
-                          "not set; allowed: cruise, drive_cycle_snapshot or prescribed_torque"});
+    violations.add(join_path(path, "condition"),
+                   "not set; allowed: cruise, drive_cycle_snapshot or prescribed_torque");
   }
   if (study.has_history()) check_history(study.history(), join_path(path, "history"), violations);
 }
@@ -139,12 +133,11 @@ void check_march_tolerances(const v1::SolverOptions& options, v1::PointModel mod
   if (!is_quasi_static && options.method() != v1::STEADY_STATE_METHOD_SHOOTING) return;
   const auto check = [&](const char* field, double value, double unset) {
     if (value == 0 || value == unset) return;
-    violations.push_back(
-        {join_path(path, field),
-         fmt::format("{} = {} has no effect: {} never marches; leave it unset and set tolerance, "
-                     "which every method keeps, or set {}",
-                     field, value, is_quasi_static ? "model = QUASI_STATIC" : "method = SHOOTING",
-                     is_quasi_static ? "model = FULL and method = MARCH" : "method = MARCH")});
+    violations.add(join_path(path, field),
+                   "{} = {} has no effect: {} never marches; leave it unset and set tolerance, "
+                   "which every method keeps, or set {}",
+                   field, value, is_quasi_static ? "model = QUASI_STATIC" : "method = SHOOTING",
+                   is_quasi_static ? "model = FULL and method = MARCH" : "method = MARCH");
   };
   const PointOptions defaults;
   check("march_step_tolerance", options.march_step_tolerance(), defaults.march_step_tolerance);
@@ -155,30 +148,27 @@ void check_march_tolerances(const v1::SolverOptions& options, v1::PointModel mod
 void check_curve(const v1::InefficiencyCurveStudy& study, const v1::SolverOptions& options,
                  const std::string& path, Violations& violations) {
   if (study.independent_points() && study.direction() != v1::SWEEP_DIRECTION_UNSPECIFIED) {
-    violations.push_back(
-        {join_path(path, "direction"),
-         fmt::format("direction = {} together with independent_points; allowed: unset, as a "
-                     "direction is that in which a branch is followed from point to point",
-                     short_name(*v1::SweepDirection_descriptor(), study.direction()))});
+    violations.add(join_path(path, "direction"),
+                   "direction = {} together with independent_points; allowed: unset, as a "
+                   "direction is that in which a branch is followed from point to point",
+                   short_name(*v1::SweepDirection_descriptor(), study.direction()));
   }
   const bool explicit_speeds = !study.speeds_kilometres_per_hour().empty();
   const std::string speeds = join_path(path, "speeds_kilometres_per_hour");
   if (explicit_speeds && has_range(study)) {
-    violations.push_back(
-        {speeds, "set together with first, last and step; allowed: one of the two"});
+    violations.add(speeds, "set together with first, last and step; allowed: one of the two");
     return;
   }
   if (!explicit_speeds && !has_range(study)) {
-    violations.push_back({speeds, "not set; allowed: explicit speeds, or first, last and step"});
+    violations.add(speeds, "not set; allowed: explicit speeds, or first, last and step");
     return;
   }
   if (!explicit_speeds) check_speed_range(study, path, violations);
   const double points =
       explicit_speeds ? study.speeds_kilometres_per_hour_size() : grid_size(study);
   if (points > kMaximumCurvePoints) {
-    violations.push_back(
-        {explicit_speeds ? speeds : join_path(path, "speed_step_kilometres_per_hour"),
-         fmt::format("{} points; allowed: at most {} (work limit)", points, kMaximumCurvePoints)});
+    violations.add(explicit_speeds ? speeds : join_path(path, "speed_step_kilometres_per_hour"),
+                   "{} points; allowed: at most {} (work limit)", points, kMaximumCurvePoints);
     return;
   }
   if (explicit_speeds) {
@@ -188,16 +178,15 @@ void check_curve(const v1::InefficiencyCurveStudy& study, const v1::SolverOption
     std::sort(sorted.begin(), sorted.end());
     const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
     if (twice != sorted.end()) {
-      violations.push_back({speeds, fmt::format("{} km/h is named twice", *twice)});
+      violations.add(speeds, "{} km/h is named twice", *twice);
     }
   }
   const double cycles =
       options.maximum_mesh_cycles() == 0 ? kDefaultMaximumCycles : options.maximum_mesh_cycles();
   if (points * cycles > kMaximumCurveMeshCycles) {
-    violations.push_back(
-        {path, fmt::format("{} points of up to {} mesh cycles; allowed: a product of at most {} "
-                           "(work limit)",
-                           points, cycles, kMaximumCurveMeshCycles)});
+    violations.add(
+        path, "{} points of up to {} mesh cycles; allowed: a product of at most {} (work limit)",
+        points, cycles, kMaximumCurveMeshCycles);
   }
 }
 
@@ -205,10 +194,9 @@ void check_law_options(const v1::Lubricant& lubricant, const v1::ModelOptions& o
                        const std::string& path, Violations& violations) {
   if (!lubricant.has_improved_yasutomi()) return;
   const auto refuse = [&](const char* field, const char* text) {
-    violations.push_back(
-        {join_path(path, field),
-         fmt::format("{}, as {} follows improved_yasutomi and neither eq 31 nor eq 32", text,
-                     lubricant.name().empty() ? "the lubricant" : lubricant.name())});
+    violations.add(join_path(path, field),
+                   "{}, as {} follows improved_yasutomi and neither eq 31 nor eq 32", text,
+                   lubricant.name().empty() ? "the lubricant" : lubricant.name());
   };
   if (options.as_published().eq31_32_logarithm()) {
     refuse("as_published.eq31_32_logarithm", "true; allowed: false");
@@ -221,20 +209,20 @@ void check_law_options(const v1::Lubricant& lubricant, const v1::ModelOptions& o
 void check_model_options(const v1::ModelOptions& options, const std::string& path,
                          Violations& violations) {
   if (!options.as_published().eq46_square_root_of_sum()) return;
-  violations.push_back(
-      {join_path(path, "as_published.eq46_square_root_of_sum"),
-       "true; allowed: false, as eq 46 acts where measured profiles become a surface: set "
-       "eq46_square_root_of_sum of ImportSurfaceProfilesRequest and use that surface here"});
+  violations.add(
+      join_path(path, "as_published.eq46_square_root_of_sum"),
+      "true; allowed: false, as eq 46 acts where measured profiles become a surface: set "
+      "eq46_square_root_of_sum of ImportSurfaceProfilesRequest and use that surface here");
 }
 
 void check_mesh_data(const v1::GearSet& gear_set, const v1::ModelOptions& options,
                      const std::string& path, Violations& violations) {
   if (!options.load_dependent_mesh_data()) return;
   if (gear_set.series_by_torque().empty() || gear_set.load_share_by_torque().empty()) {
-    violations.push_back(
-        {path, fmt::format("load_dependent_mesh_data = true; allowed: false, as {} "
-                           "holds no data by torque (eqs 8-11)",
-                           gear_set.name())});
+    violations.add(path,
+                   "load_dependent_mesh_data = true; allowed: false, as {} "
+                   "holds no data by torque (eqs 8-11)",
+                   gear_set.name());
   }
 }
 

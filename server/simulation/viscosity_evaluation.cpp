@@ -1,7 +1,5 @@
 #include "server/simulation/viscosity_evaluation.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <limits>
 #include <string>
@@ -39,13 +37,12 @@ std::optional<ViscosityEvaluation> read_viscosity(const v1::EvaluateViscosityReq
   const double temperatures = request.temperatures_celsius_size();
   const double pressures = request.pressures_pascals_size();
   if (temperatures == 0) {
-    violations.push_back({"temperatures_celsius", "not set; allowed: at least one"});
+    violations.add("temperatures_celsius", "not set; allowed: at least one");
   }
   if (temperatures * pressures > kMaximumViscosities) {
-    violations.push_back(
-        {"pressures_pascals", fmt::format("{} temperatures x {} pressures; allowed: at most {} "
-                                          "combinations",
-                                          temperatures, pressures, kMaximumViscosities)});
+    violations.add("pressures_pascals",
+                   "{} temperatures x {} pressures; allowed: at most {} combinations", temperatures,
+                   pressures, kMaximumViscosities);
   }
   ViscosityEvaluation out;
   if (request.has_lubricant_parameters()) {
@@ -59,7 +56,7 @@ std::optional<ViscosityEvaluation> read_viscosity(const v1::EvaluateViscosityReq
       out.lubricant_revision = found->revision_name;
     }
   } else {
-    violations.push_back({"fluid", "not set; allowed: lubricant or lubricant_parameters"});
+    violations.add("fluid", "not set; allowed: lubricant or lubricant_parameters");
   }
   if (out.lubricant) {
     check_law_options(*out.lubricant, request.model_options(), "model_options", violations);

@@ -13,6 +13,7 @@
 #include "server/storage/properties.h"
 #include "server/storage/resource_rows.h"
 #include "server/storage/resource_types.h"
+#include "server/support/value_of.h"
 
 namespace tribodyn::server {
 namespace {
@@ -23,22 +24,10 @@ using Comparison = Restriction::Comparison;
 constexpr int kSelectiveLabelLimit = 1000;
 constexpr std::string_view kLabels = "labels.";
 
-std::string operator_of(Comparison comparison) {
-  switch (comparison) {
-    case Comparison::kNotEqual:
-      return "<>";
-    case Comparison::kLess:
-      return "<";
-    case Comparison::kLessOrEqual:
-      return "<=";
-    case Comparison::kGreater:
-      return ">";
-    case Comparison::kGreaterOrEqual:
-      return ">=";
-    default:
-      return "=";
-  }
-}
+constexpr std::pair<Comparison, const char*> kOperators[] = {
+    {Comparison::kEqual, "="},   {Comparison::kNotEqual, "<>"},
+    {Comparison::kLess, "<"},    {Comparison::kLessOrEqual, "<="},
+    {Comparison::kGreater, ">"}, {Comparison::kGreaterOrEqual, ">="}};
 
 /// Returns true if fewer than kSelectiveLabelLimit rows of a table of labels satisfy a condition.
 bool is_rare(Connection& db, const std::string& from_labels,
@@ -114,14 +103,12 @@ Condition one_condition(Connection& db, const std::string& table, const std::str
 }  // namespace
 
 Condition compared(const std::string& column, const Restriction& restriction) {
-  switch (restriction.comparison) {
-    case Comparison::kContains:
-      return {"instr(lower(" + column + "), lower(?)) > 0", {restriction.value}};
-    case Comparison::kPresent:
-      return {column + " IS NOT NULL", {}};
-    default:
-      return {column + " " + operator_of(restriction.comparison) + " ?", {restriction.value}};
+  if (restriction.comparison == Comparison::kContains) {
+    return {"instr(lower(" + column + "), lower(?)) > 0", {restriction.value}};
   }
+  if (restriction.comparison == Comparison::kPresent) return {column + " IS NOT NULL", {}};
+  const char* const sign = value_of(kOperators, restriction.comparison, "=");
+  return {column + " " + sign + " ?", {restriction.value}};
 }
 
 Condition list_condition(Connection& db, const std::string& table, const std::string& project,

@@ -8,10 +8,11 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstdlib>
 #include <set>
 #include <system_error>
+
+#include "server/support/text.h"
 
 namespace tribodyn::server {
 namespace {
@@ -72,10 +73,8 @@ ListenAddress parse_listen_address(const std::string& text) {
   }
   ListenAddress out;
   out.host = text.substr(0, colon);
-  const char* begin = text.data() + colon + 1;
-  const char* end = text.data() + text.size();
-  const auto [parsed, error] = std::from_chars(begin, end, out.port);
-  if (error != std::errc() || parsed != end || out.port < 0 || out.port > 65535) {
+  out.port = parse_number<int>(text.substr(colon + 1)).value_or(-1);
+  if (out.port < 0 || out.port > 65535) {
     throw ListenError("\"" + text + "\" does not end in a port from 0 to 65535; " + kForms);
   }
   if (out.host == "localhost") out.host = "127.0.0.1";
@@ -105,17 +104,14 @@ std::vector<ListenAddress> parse_listen_addresses(const std::string& text) {
 
 std::vector<ListenAddress> default_addresses() {
   std::vector<ListenAddress> out;
-  const char* runtime = std::getenv("XDG_RUNTIME_DIR");
-  const char* home = std::getenv("HOME");
-  std::string folder;
-  if (runtime != nullptr && *runtime != '\0') {
-    folder = std::string(runtime) + "/tribodyn";
-  } else if (home != nullptr && *home != '\0') {
-    folder = std::string(home) + "/.tribodyn";
-  }
-  if (!folder.empty()) {
+  for (const auto& [variable, name] :
+       {std::pair("XDG_RUNTIME_DIR", "/tribodyn"), std::pair("HOME", "/.tribodyn")}) {
+    const char* parent = std::getenv(variable);
+    if (parent == nullptr || *parent == '\0') continue;
+    const std::string folder = std::string(parent) + name;
     require_own_folder(folder);
     out.push_back(parse_unix(folder + "/socket"));
+    break;
   }
   out.push_back({.host = "127.0.0.1", .port = kDefaultPort, .socket_path = ""});
   return out;

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
 
 #include "server/contract/resource_names.h"
+#include "server/support/text.h"
 
 namespace tribodyn::server {
 namespace {
@@ -76,7 +76,7 @@ class CsvViolations {
   bool full() const { return count_ >= kMaximumCsvViolations; }
   void add(std::string place, std::string text) {
     if (count_++ < kMaximumCsvViolations) {
-      violations_.push_back({std::move(place), std::move(text)});
+      violations_.add(std::move(place), std::move(text));
     }
   }
 
@@ -138,9 +138,7 @@ std::string plain_header(std::string_view header) {
 /// Returns true if a list with the separator '|' contains the word.
 bool list_contains(std::string_view list, std::string_view word) {
   while (!list.empty()) {
-    const std::size_t end = std::min(list.find('|'), list.size());
-    if (list.substr(0, end) == word) return true;
-    list.remove_prefix(std::min(end + 1, list.size()));
+    if (take_part(list, '|') == word) return true;
   }
   return false;
 }
@@ -179,12 +177,8 @@ bool has_decimal_comma(std::string_view cell) {
 
 std::optional<double> number_of(std::string_view cell) {
   if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value)) {
-    return std::nullopt;
-  }
-  return value;
+  const auto value = parse_number<double>(cell);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 }  // namespace
@@ -192,20 +186,19 @@ std::optional<double> number_of(std::string_view cell) {
 std::optional<CsvTable> parse_csv(std::string_view text, const std::string& name,
                                   std::size_t maximum_bytes, Violations& violations) {
   if (text.size() > maximum_bytes) {
-    violations.push_back(
-        {name, fmt::format("{} bytes; allowed: at most {}", text.size(), maximum_bytes)});
+    violations.add(name, "{} bytes; allowed: at most {}", text.size(), maximum_bytes);
     return std::nullopt;
   }
   const std::size_t before = violations.size();
   if (text.starts_with("PK\x03\x04") || text.starts_with("\xd0\xcf\x11\xe0")) {
-    violations.push_back({name, "is an Excel workbook; allowed: text, saved as \"CSV UTF-8\""});
+    violations.add(name, "is an Excel workbook; allowed: text, saved as \"CSV UTF-8\"");
     return std::nullopt;
   }
   if (text.find('\0') != std::string_view::npos) {
     const bool is_utf16 = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff") ||
                           (text.size() > 1 && (text[0] == '\0') != (text[1] == '\0'));
-    violations.push_back({name, is_utf16 ? "is UTF-16; allowed: UTF-8, saved as \"CSV UTF-8\""
-                                         : "is not text: it contains zero bytes"});
+    violations.add(name, is_utf16 ? "is UTF-16; allowed: UTF-8, saved as \"CSV UTF-8\""
+                                  : "is not text: it contains zero bytes");
     return std::nullopt;
   }
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
@@ -213,13 +206,11 @@ std::optional<CsvTable> parse_csv(std::string_view text, const std::string& name
   table.name = name;
   TableReader reader(table, violations);
   for (int number = 1; !text.empty() && !reader.full(); ++number) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    reader.read(text.substr(0, end), number);
-    text.remove_prefix(std::min(end + 1, text.size()));
+    reader.read(take_part(text, '\n'), number);
   }
   if (!table.rows.empty()) return table;
   if (violations.size() == before) {
-    violations.push_back({name, "has no rows; allowed: a header and at least one row"});
+    violations.add(name, "has no rows; allowed: a header and at least one row");
   }
   return std::nullopt;
 }
@@ -228,23 +219,28 @@ std::string csv_place(const CsvTable& table, int line, std::string_view column) 
   return fmt::format("{} row {} column {}", table.name, line, column);
 }
 
+std::vector<std::string> headers_of(std::span<const CsvColumnForm> forms) {
+  std::vector<std::string> out;
+  for (const CsvColumnForm& form : forms) out.emplace_back(form.header);
+  return out;
+}
+
 std::vector<CsvColumn> match_columns(const CsvTable& table, std::span<const CsvColumnForm> forms,
                                      Violations& violations) {
   std::vector<CsvColumn> out;
-  std::vector<std::string> known;
-  for (const CsvColumnForm& form : forms) known.emplace_back(form.header);
+  const std::vector<std::string> known = headers_of(forms);
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const std::string& header = table.columns[i];
     const auto form = std::find_if(forms.begin(), forms.end(), [&](const CsvColumnForm& each) {
       return matches_form(header, each);
     });
     if (form == forms.end()) {
-      violations.push_back({fmt::format("{} column {}", table.name, i + 1),
-                            fmt::format("\"{}\" is not a known header{}", plain_excerpt(header),
-                                        meant_text(header, known))});
+      violations.add(fmt::format("{} column {}", table.name, i + 1),
+                     "\"{}\" is not a known header{}", plain_excerpt(header),
+                     meant_text(header, known));
     } else if (find_column(out, form->quantity) != nullptr) {
-      violations.push_back({fmt::format("{} column {}", table.name, header),
-                            fmt::format("{} is given twice", form->quantity)});
+      violations.add(fmt::format("{} column {}", table.name, header), "{} is given twice",
+                     form->quantity);
     } else {
       out.push_back({i, *form});
     }
@@ -270,11 +266,9 @@ void check_units_row(CsvTable& table, const std::vector<CsvColumn>& columns,
                cell.size() < 12 && !has_decimal_comma(cell) && cell.front() != '-';
       });
   if (!holds_units) return;
-  violations.push_back(
-      {fmt::format("{} row {}", table.name, row.line),
-       fmt::format(
-           "looks like units (\"{}\"); allowed: numbers. Delete the row, or begin it with #",
-           plain_excerpt(row.cells[columns.front().index]))});
+  violations.add(fmt::format("{} row {}", table.name, row.line),
+                 "looks like units (\"{}\"); allowed: numbers. Delete the row, or begin it with #",
+                 plain_excerpt(row.cells[columns.front().index]));
   table.rows.erase(table.rows.begin());
 }
 

@@ -50,6 +50,8 @@ struct CsvColumnForm {
   std::string_view units = {};
 };
 
+std::vector<std::string> headers_of(std::span<const CsvColumnForm> forms);
+
 /// The column of a table that holds a quantity, and its form.
 struct CsvColumn {
   std::size_t index = 0;

@@ -28,6 +28,9 @@ constexpr char kRollAngle[] = "pinion_roll_radians";
 constexpr char kPhase[] = "mesh_phase";
 constexpr char kSlot[] = "slot";
 
+/// The forms of a column of lengths.
+#define TRIBODYN_LENGTH(name) \
+  {#name "_metres", #name "_metres"}, { #name "_millimetres", #name "_metres", kMillimetre }
 constexpr CsvColumnForm kToothContactForms[] = {
     {kRoll, kRoll},
     {kRollAngle, kRollAngle},
@@ -35,27 +38,18 @@ constexpr CsvColumnForm kToothContactForms[] = {
     {kPhase, kPhase},
     {kSlot, kSlot},
     {"load_share", "load_share"},
-    {"radius_x_metres", "radius_x_metres"},
-    {"radius_x_millimetres", "radius_x_metres", kMillimetre},
-    {"radius_y_metres", "radius_y_metres"},
-    {"radius_y_millimetres", "radius_y_metres", kMillimetre},
-    {"pinion_velocity_x_metres", "pinion_velocity_x_metres"},
-    {"pinion_velocity_x_millimetres", "pinion_velocity_x_metres", kMillimetre},
-    {"pinion_velocity_y_metres", "pinion_velocity_y_metres"},
-    {"pinion_velocity_y_millimetres", "pinion_velocity_y_metres", kMillimetre},
-    {"gear_velocity_x_metres", "gear_velocity_x_metres"},
-    {"gear_velocity_x_millimetres", "gear_velocity_x_metres", kMillimetre},
-    {"gear_velocity_y_metres", "gear_velocity_y_metres"},
-    {"gear_velocity_y_millimetres", "gear_velocity_y_metres", kMillimetre},
-    {"contact_point_velocity_x_metres", "contact_point_velocity_x_metres"},
-    {"contact_point_velocity_x_millimetres", "contact_point_velocity_x_metres", kMillimetre},
-    {"contact_point_velocity_y_metres", "contact_point_velocity_y_metres"},
-    {"contact_point_velocity_y_millimetres", "contact_point_velocity_y_metres", kMillimetre},
-    {"pinion_friction_arm_metres", "pinion_friction_arm_metres"},
-    {"pinion_friction_arm_millimetres", "pinion_friction_arm_metres", kMillimetre},
-    {"gear_friction_arm_metres", "gear_friction_arm_metres"},
-    {"gear_friction_arm_millimetres", "gear_friction_arm_metres", kMillimetre},
+    TRIBODYN_LENGTH(radius_x),
+    TRIBODYN_LENGTH(radius_y),
+    TRIBODYN_LENGTH(pinion_velocity_x),
+    TRIBODYN_LENGTH(pinion_velocity_y),
+    TRIBODYN_LENGTH(gear_velocity_x),
+    TRIBODYN_LENGTH(gear_velocity_y),
+    TRIBODYN_LENGTH(contact_point_velocity_x),
+    TRIBODYN_LENGTH(contact_point_velocity_y),
+    TRIBODYN_LENGTH(pinion_friction_arm),
+    TRIBODYN_LENGTH(gear_friction_arm),
 };
+#undef TRIBODYN_LENGTH
 
 constexpr CsvColumnForm kSeriesForms[] = {
     {"quantity", "quantity"}, {"harmonic", "harmonic"}, {"sine", "sine"}, {"cosine", "cosine"}};
@@ -67,6 +61,21 @@ struct RowOrder {
   int samples = 0;               ///< samples of each slot
   std::vector<std::size_t> row;  ///< row of the table at [slot * samples + sample]
 };
+
+/// Adds a warning to the provenance of an imported block, unless the client states one.
+void note_import(const char* block, const char* source, const std::string& warning,
+                 v1::GearSet& gear_set) {
+  for (v1::ParameterProvenance& entry : *gear_set.mutable_provenance()) {
+    if (entry.field() != block) continue;
+    if (entry.warning().empty()) entry.set_warning(warning);
+    return;
+  }
+  v1::ParameterProvenance* entry = gear_set.add_provenance();
+  entry->set_field(block);
+  entry->set_provenance(v1::PROVENANCE_USER);
+  entry->set_source(source);
+  entry->set_warning(warning);
+}
 
 /// Reads a tooth contact table into the flank slots of a gear set.
 class ToothContactReader {
@@ -109,14 +118,13 @@ class ToothContactReader {
 
   bool has(std::string_view quantity) const { return find_column(columns_, quantity) != nullptr; }
 
-  void add_violation(const std::string& text) { violations_.push_back({table_.name, text}); }
+  void add_violation(const std::string& text) { violations_.add(table_.name, text); }
 
   void check_columns() {
     const int rolls = (has(kRoll) ? 1 : 0) + (has(kRollAngle) ? 1 : 0) + (has(kPhase) ? 1 : 0);
     if (rolls != 1) {
       add_violation(
-          "allowed: exactly one of roll_pitches, pinion_roll_radians (or _degrees) and "
-          "mesh_phase");
+          "allowed: exactly one of roll_pitches, pinion_roll_radians (or _degrees) and mesh_phase");
     }
     if (has(kPhase) != has(kSlot)) add_violation("mesh_phase and slot need each other");
     const auto& descriptor = *v1::FlankSlot::descriptor();
@@ -153,11 +161,11 @@ class ToothContactReader {
       const Constraint& row = *find_constraint("FlankSlot", name);
       const std::string_view header = find_column(columns_, name)->form.header;
       for (std::size_t i = 0; i < values.size(); ++i) {
-        const bool in_range = values[i] >= row.minimum && values[i] <= row.maximum;
+        const bool in_range = row.allows(values[i]);
         if (in_range || std::isnan(values[i])) continue;
         if (++count > kMaximumCsvViolations) return;
-        violations_.push_back(
-            {csv_place(table_, table_.rows[i].line, header), out_of_range_text(row, values[i])});
+        violations_.add(csv_place(table_, table_.rows[i].line, header),
+                        out_of_range_text(row, values[i]));
       }
     }
   }
@@ -172,10 +180,8 @@ class ToothContactReader {
     }
     const std::size_t rows = roll.size();
     if (rows < 4 || (rows - 1) % kFlankPairs != 0) {
-      return add_violation(
-          fmt::format("{} rows; allowed: 3 n + 1 from roll -1.5 to 1.5 pitches, n "
-                      "intervals a pitch",
-                      rows));
+      return add_violation(fmt::format(
+          "{} rows; allowed: 3 n + 1 from roll -1.5 to 1.5 pitches, n intervals a pitch", rows));
     }
     row_order_.samples = static_cast<int>((rows - 1) / kFlankPairs) + 1;
     const double step = 3.0 / static_cast<double>(rows - 1);
@@ -183,10 +189,9 @@ class ToothContactReader {
     for (std::size_t i = 0; i < rows; ++i) {
       const double expected = -1.5 + step * static_cast<double>(i);
       if (std::isnan(roll[i]) || near(roll[i], expected, kPitchSpacingTolerance)) continue;
-      violations_.push_back({csv_place(table_, table_.rows[i].line, header.form.header),
-                             fmt::format("roll {} pitches; allowed: {}, evenly spaced from -1.5 to "
-                                         "1.5",
-                                         roll[i], expected)});
+      violations_.add(csv_place(table_, table_.rows[i].line, header.form.header),
+                      "roll {} pitches; allowed: {}, evenly spaced from -1.5 to 1.5", roll[i],
+                      expected);
       if (violations_.size() > kMaximumCsvViolations) return;
     }
     for (int k = 0; k < kFlankPairs; ++k) {
@@ -209,8 +214,8 @@ class ToothContactReader {
       if (slot[i] == 0 || slot[i] == 1 || slot[i] == 2) {
         rows[static_cast<std::size_t>(slot[i])].push_back(i);
       } else {
-        violations_.push_back({csv_place(table_, table_.rows[i].line, kSlot),
-                               fmt::format("{}; allowed: 0, 1 or 2", slot[i])});
+        violations_.add(csv_place(table_, table_.rows[i].line, kSlot), "{}; allowed: 0, 1 or 2",
+                        slot[i]);
         if (violations_.size() > kMaximumCsvViolations) return;
       }
     }
@@ -230,9 +235,8 @@ class ToothContactReader {
             near(phase[of_slot[j]], expected, kPitchSpacingTolerance)) {
           continue;
         }
-        violations_.push_back({csv_place(table_, table_.rows[of_slot[j]].line, kPhase),
-                               fmt::format("{}; allowed: {}, evenly spaced from 0 to 1",
-                                           phase[of_slot[j]], expected)});
+        violations_.add(csv_place(table_, table_.rows[of_slot[j]].line, kPhase),
+                        "{}; allowed: {}, evenly spaced from 0 to 1", phase[of_slot[j]], expected);
         if (violations_.size() > kMaximumCsvViolations) return;
       }
     }
@@ -282,16 +286,7 @@ class ToothContactReader {
       warning += std::string(warning.empty() ? "" : "; ") +
                  "velocities of the contact point not known, taken as 0";
     }
-    for (v1::ParameterProvenance& entry : *gear_set_.mutable_provenance()) {
-      if (entry.field() != "flank_slots") continue;
-      if (entry.warning().empty()) entry.set_warning(warning);
-      return;
-    }
-    v1::ParameterProvenance* entry = gear_set_.add_provenance();
-    entry->set_field("flank_slots");
-    entry->set_provenance(v1::PROVENANCE_USER);
-    entry->set_source("imported tooth contact table");
-    entry->set_warning(warning);
+    note_import("flank_slots", "imported tooth contact table", warning, gear_set_);
   }
 
   const CsvTable& table_;
@@ -325,7 +320,7 @@ void read_series(const CsvTable& table, v1::GearSet& gear_set, Violations& viola
   const std::vector<CsvColumn> columns = match_columns(table, kSeriesForms, violations);
   for (const CsvColumnForm& form : kSeriesForms) {
     if (find_column(columns, form.quantity) == nullptr) {
-      violations.push_back({table.name, "has no column " + std::string(form.header)});
+      violations.add(table.name, "has no column " + std::string(form.header));
     }
   }
   if (violations.size() > before) return;
@@ -345,16 +340,14 @@ void read_series(const CsvTable& table, v1::GearSet& gear_set, Violations& viola
     const std::string& quantity = row.cells[find_column(columns, "quantity")->index];
     const FieldDescriptor* field = series_field(quantity);
     if (field == nullptr) {
-      violations.push_back({csv_place(table, row.line, "quantity"),
-                            fmt::format("\"{}\" is unknown{}", plain_excerpt(quantity),
-                                        meant_text(quantity, series_quantities()))});
+      violations.add(csv_place(table, row.line, "quantity"), "\"{}\" is unknown{}",
+                     plain_excerpt(quantity), meant_text(quantity, series_quantities()));
       continue;
     }
     int& expected = next.at(static_cast<std::size_t>(field->index()));
     if (harmonic[i] != expected) {
-      violations.push_back(
-          {csv_place(table, row.line, "harmonic"),
-           fmt::format("{}; allowed: {}, the next one of {}", harmonic[i], expected, quantity)});
+      violations.add(csv_place(table, row.line, "harmonic"), "{}; allowed: {}, the next one of {}",
+                     harmonic[i], expected, quantity);
       continue;
     }
     auto* target =
@@ -362,18 +355,17 @@ void read_series(const CsvTable& table, v1::GearSet& gear_set, Violations& viola
     if (expected++ == 0) {
       target->set_mean(cosine[i]);
       if (std::isnan(sine[i]) || sine[i] == 0) continue;
-      violations.push_back(
-          {csv_place(table, row.line, "sine"), "allowed: empty or 0 for harmonic 0"});
+      violations.add(csv_place(table, row.line, "sine"), "allowed: empty or 0 for harmonic 0");
     } else {
       target->add_cosine(cosine[i]);
       target->add_sine(sine[i]);
       if (!std::isnan(sine[i])) continue;
-      violations.push_back({csv_place(table, row.line, "sine"), "is empty; allowed: a number"});
+      violations.add(csv_place(table, row.line, "sine"), "is empty; allowed: a number");
     }
   }
   for (const std::string& quantity : series_quantities()) {
     if (next.at(static_cast<std::size_t>(series_field(quantity)->index())) > 0) continue;
-    violations.push_back({table.name, "has no row of " + quantity});
+    violations.add(table.name, "has no row of " + quantity);
   }
   *gear_set.mutable_series() = std::move(series);
 }
@@ -391,30 +383,14 @@ void snap_ratio(v1::GearSet& gear_set) {
   }
   series.mutable_gear_contact_radius_metres()->set_mean(expected);
   const std::string warning = fmt::format("R_g0 = {} m set to R_p0 N_g/N_p", stated);
-  for (v1::ParameterProvenance& entry : *gear_set.mutable_provenance()) {
-    if (entry.field() != "series") continue;
-    if (entry.warning().empty()) entry.set_warning(warning);
-    return;
-  }
-  v1::ParameterProvenance* entry = gear_set.add_provenance();
-  entry->set_field("series");
-  entry->set_provenance(v1::PROVENANCE_USER);
-  entry->set_source("imported series");
-  entry->set_warning(warning);
-}
-
-template <std::size_t size>
-std::vector<std::string> headers(const CsvColumnForm (&forms)[size]) {
-  std::vector<std::string> out;
-  for (const CsvColumnForm& form : forms) out.emplace_back(form.header);
-  return out;
+  note_import("series", "imported series", warning, gear_set);
 }
 
 }  // namespace
 
-std::vector<std::string> tooth_contact_headers() { return headers(kToothContactForms); }
+std::vector<std::string> tooth_contact_headers() { return headers_of(kToothContactForms); }
 
-std::vector<std::string> series_headers() { return headers(kSeriesForms); }
+std::vector<std::string> series_headers() { return headers_of(kSeriesForms); }
 
 std::optional<v1::GearSet> import_gear_set(const v1::ImportGearSetRequest& request,
                                            const std::string& name, const ResourceLookup& lookup,

@@ -63,7 +63,7 @@ void read_table(CsvTable& table, v1::LubricantMeasurements& out, Positions& posi
   const std::size_t before = violations.size();
   const std::vector<CsvColumn> columns = match_columns(table, kViscosityForms, violations);
   if (find_column(columns, kTemperature) == nullptr) {
-    violations.push_back({table.name, "has no column temperature_celsius or temperature_kelvin"});
+    violations.add(table.name, "has no column temperature_celsius or temperature_kelvin");
   }
   if (violations.size() > before) return;
   check_units_row(table, columns, violations);
@@ -120,11 +120,7 @@ void replace_paths(const Positions& positions, int stated, std::size_t begin,
 
 }  // namespace
 
-std::vector<std::string> viscosity_headers() {
-  std::vector<std::string> out;
-  for (const CsvColumnForm& form : kViscosityForms) out.emplace_back(form.header);
-  return out;
-}
+std::vector<std::string> viscosity_headers() { return headers_of(kViscosityForms); }
 
 std::optional<v1::Lubricant> import_lubricant(const v1::ImportLubricantRequest& request,
                                               const std::string& name, const ResourceLookup& lookup,
@@ -141,8 +137,7 @@ std::optional<v1::Lubricant> import_lubricant(const v1::ImportLubricantRequest& 
     check_client_fields(request.lubricant(), lookup, "lubricant", violations);
     return std::nullopt;
   }
-  auto accepted = accept(lubricant, static_cast<const v1::Lubricant*>(nullptr), lookup, "lubricant",
-                         violations);
+  auto accepted = accept(lubricant, nullptr, lookup, "lubricant", violations);
   replace_paths(positions, stated, before, violations);
   return accepted;
 }

@@ -63,8 +63,7 @@ void set_parameters(v1::Surface& surface, const AsPublished& as_published) {
 /// Adds a violation for each set field that follows from the profiles.
 void check_fields_of_profiles_unset(const v1::Surface& surface, Violations& violations) {
   const auto refuse = [&](const std::string& name) {
-    violations.push_back(
-        {"surface." + name, name + " follows from the profiles; allowed: not set"});
+    violations.add("surface." + name, name + " follows from the profiles; allowed: not set");
   };
   for (const char* name : kFromProfiles) {
     const auto* field = v1::Surface::descriptor()->FindFieldByName(name);
@@ -83,7 +82,7 @@ void check_other_fields(const v1::Surface& stated, const std::string& name,
     rest.GetReflection()->SetDouble(&rest, v1::Surface::descriptor()->FindFieldByName(field),
                                     find_constraint("Surface", field)->minimum);
   }
-  accept(rest, static_cast<const v1::Surface*>(nullptr), lookup, "surface", violations);
+  accept(rest, nullptr, lookup, "surface", violations);
 }
 
 }  // namespace
@@ -122,10 +121,10 @@ std::optional<v1::Surface> import_surface(const v1::ImportSurfaceProfilesRequest
     as_published.eq46_square_root_of_sum = request.eq46_square_root_of_sum();
     set_parameters(surface, as_published);
   } catch (const Refusal& refusal) {
-    violations.push_back({"profiles", refusal.what()});
+    violations.add("profiles", refusal.what());
     return std::nullopt;
   }
-  return accept(surface, static_cast<const v1::Surface*>(nullptr), lookup, "surface", violations);
+  return accept(surface, nullptr, lookup, "surface", violations);
 }
 
 }  // namespace tribodyn::server

@@ -85,20 +85,19 @@ void check_spacing(const CsvTable& table, const CsvColumn& column, const std::ve
         spacing <= 0 || std::abs(each.per_sample - spacing) <= kProfileSpacingTolerance * spacing;
     if (rises && even) continue;
     if (++wrong > kMaximumCsvViolations) return;
-    violations.push_back(
-        {csv_place(table, table.rows[each.row].line, column.form.header),
-         spacing > 0
-             ? fmt::format(
-                   "a step of {:.6g} m; allowed: {:.6g} m within {} of it, positions evenly "
-                   "spaced and rising (eq 45)",
-                   each.per_sample, spacing, kProfileSpacingTolerance)
-             : fmt::format("a step of {:.6g} m; allowed: above 0, positions evenly spaced and "
-                           "rising (eq 45)",
-                           each.per_sample)});
+    violations.add(
+        csv_place(table, table.rows[each.row].line, column.form.header),
+        spacing > 0
+            ? fmt::format("a step of {:.6g} m; allowed: {:.6g} m within {} of it, positions evenly "
+                          "spaced and rising (eq 45)",
+                          each.per_sample, spacing, kProfileSpacingTolerance)
+            : fmt::format("a step of {:.6g} m; allowed: above 0, positions evenly spaced and "
+                          "rising (eq 45)",
+                          each.per_sample));
   }
   const Constraint& row = *find_constraint("SurfaceMeasurement", "spacing_metres");
-  if (spacing > 0 && !(spacing >= row.minimum && spacing <= row.maximum)) {
-    violations.push_back({table.name, out_of_range_text(row, spacing)});
+  if (spacing > 0 && !row.allows(spacing)) {
+    violations.add(table.name, out_of_range_text(row, spacing));
   }
 }
 
@@ -114,13 +113,13 @@ std::optional<ReadProfile> measure(const v1::SurfaceProfile& profile, v1::Levell
   const CsvColumn* position = find_column(columns, kPosition);
   const CsvColumn* height = find_column(columns, kHeight);
   if (position == nullptr || height == nullptr) {
-    violations.push_back({name, "allowed: a column position_... and a column height_..."});
+    violations.add(name, "allowed: a column position_... and a column height_...");
   }
   check_units_row(*table, columns, violations);
   const Constraint& samples = *find_constraint("SurfaceMeasurement", "samples");
   const auto count = static_cast<double>(table->rows.size());
-  if (count < samples.minimum || count > samples.maximum) {
-    violations.push_back({name, out_of_range_text(samples, count)});
+  if (!samples.allows(count)) {
+    violations.add(name, out_of_range_text(samples, count));
   }
   std::vector<double> positions;
   std::vector<double> heights;
@@ -153,7 +152,7 @@ std::optional<ReadProfile> measure(const v1::SurfaceProfile& profile, v1::Levell
     check_message(out, name, violations);
     return read;
   } catch (const Refusal& refusal) {
-    violations.push_back({name, refusal.what()});
+    violations.add(name, refusal.what());
     return std::nullopt;
   }
 }
@@ -165,12 +164,12 @@ void check_profiles(const Request& request, Violations& violations) {
        {std::pair("short_wave_cut_off_metres", request.short_wave_cut_off_metres()),
         std::pair("long_wave_cut_off_metres", request.long_wave_cut_off_metres())}) {
     const Constraint& row = *find_constraint(Request::descriptor()->name(), field);
-    if (value == 0 || (value >= row.minimum && value <= row.maximum)) continue;
-    violations.push_back({field, out_of_range_text(row, value)});
+    if (value == 0 || row.allows(value)) continue;
+    violations.add(field, out_of_range_text(row, value));
   }
   if (request.profiles().empty() || request.profiles_size() > kMaximumProfiles) {
-    violations.push_back({"profiles", fmt::format("{} profiles; allowed: 1 to {}",
-                                                  request.profiles_size(), kMaximumProfiles)});
+    violations.add("profiles", "{} profiles; allowed: 1 to {}", request.profiles_size(),
+                   kMaximumProfiles);
     return;
   }
   std::size_t bytes = 0;
@@ -182,16 +181,16 @@ void check_profiles(const Request& request, Violations& violations) {
     if (seen.emplace(profile.member(), profile.direction()).second) continue;
     // Profiles with a direction may be repeats.
     if (profile.direction() != v1::PROFILE_DIRECTION_UNSPECIFIED) continue;
-    violations.push_back({"profiles",
-                          "two of one member without a direction; allowed: one, or each with its "
-                          "direction, AXIAL or RADIAL (repeats of a direction are averaged)"});
+    violations.add("profiles",
+                   "two of one member without a direction; allowed: one, or each with its "
+                   "direction, AXIAL or RADIAL (repeats of a direction are averaged)");
   }
   if (both && single) {
-    violations.push_back({"profiles", "the member is set in some; allowed: in all or none"});
+    violations.add("profiles", "the member is set in some; allowed: in all or none");
   }
   if (bytes > kMaximumProfileBytes) {
-    violations.push_back({"profiles", fmt::format("{} bytes together; allowed: at most {}", bytes,
-                                                  kMaximumProfileBytes)});
+    violations.add("profiles", "{} bytes together; allowed: at most {}", bytes,
+                   kMaximumProfileBytes);
   }
   for (int i = 0; i < request.profiles_size(); ++i) {
     const v1::SurfaceProfile& each = request.profiles(i);
@@ -200,17 +199,17 @@ void check_profiles(const Request& request, Violations& violations) {
                          each.direction() == v1::PROFILE_DIRECTION_UNSPECIFIED &&
                          other.direction() != v1::PROFILE_DIRECTION_UNSPECIFIED;
       if (!mixed) continue;
-      violations.push_back({fmt::format("profiles[{}].direction", i),
-                            "not set; allowed: AXIAL or RADIAL, because another profile of this "
-                            "member has a direction"});
+      violations.add(fmt::format("profiles[{}].direction", i),
+                     "not set; allowed: AXIAL or RADIAL, because another profile of this "
+                     "member has a direction");
     }
     if (!v1::FlankMember_IsValid(each.member())) {
-      violations.push_back({fmt::format("profiles[{}].member", i),
-                            "allowed: FLANK_MEMBER_PINION, FLANK_MEMBER_GEAR or unset"});
+      violations.add(fmt::format("profiles[{}].member", i),
+                     "allowed: FLANK_MEMBER_PINION, FLANK_MEMBER_GEAR or unset");
     }
     if (!v1::ProfileDirection_IsValid(each.direction())) {
-      violations.push_back({fmt::format("profiles[{}].direction", i),
-                            "allowed: PROFILE_DIRECTION_AXIAL, PROFILE_DIRECTION_RADIAL or unset"});
+      violations.add(fmt::format("profiles[{}].direction", i),
+                     "allowed: PROFILE_DIRECTION_AXIAL, PROFILE_DIRECTION_RADIAL or unset");
     }
   }
   const bool has_two_directions =
@@ -219,13 +218,12 @@ void check_profiles(const Request& request, Violations& violations) {
                seen.count({each.first, v1::PROFILE_DIRECTION_RADIAL}) > 0;
       });
   if (request.eq46_square_root_of_sum() && !has_two_directions) {
-    violations.push_back({"eq46_square_root_of_sum",
-                          "true; allowed: false, because eq 46 combines an AXIAL and a RADIAL "
-                          "profile of one member, and no member has both"});
+    violations.add("eq46_square_root_of_sum",
+                   "true; allowed: false, because eq 46 combines an AXIAL and a RADIAL "
+                   "profile of one member, and no member has both");
   }
   if (!v1::Levelling_IsValid(request.levelling())) {
-    violations.push_back(
-        {"levelling", "allowed: LEVELLING_MEAN, LEVELLING_LEAST_SQUARES_LINE or unset"});
+    violations.add("levelling", "allowed: LEVELLING_MEAN, LEVELLING_LEAST_SQUARES_LINE or unset");
   }
 }
 
@@ -331,10 +329,6 @@ std::string unmeasured_text(const Measurements& measurements) {
   return text;
 }
 
-std::vector<std::string> profile_headers() {
-  std::vector<std::string> out;
-  for (const CsvColumnForm& form : kProfileForms) out.emplace_back(form.header);
-  return out;
-}
+std::vector<std::string> profile_headers() { return headers_of(kProfileForms); }
 
 }  // namespace tribodyn::server

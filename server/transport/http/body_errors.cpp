@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "server/contract/resource_names.h"
+#include "server/support/text.h"
 
 namespace tribodyn::server {
 namespace {
@@ -63,8 +64,7 @@ std::string take_place(std::string_view& complaint) {
 const Descriptor* message_at(const Descriptor& type, std::string_view path) {
   const Descriptor* out = &type;
   while (out != nullptr && !path.empty()) {
-    std::string_view name = path.substr(0, path.find('.'));
-    path.remove_prefix(std::min(name.size() + 1, path.size()));
+    std::string_view name = take_part(path, '.');
     name = name.substr(0, name.find('['));
     const FieldDescriptor* field = out->FindFieldByName(std::string(name));
     if (field == nullptr) field = out->FindFieldByCamelcaseName(std::string(name));

@@ -1,25 +1,11 @@
 #include "server/transport/http/byte_range.h"
 
 #include <algorithm>
-#include <charconv>
 
+#include "server/support/text.h"
 #include "server/transport/http/rest_answer.h"
 
 namespace tribodyn::server {
-namespace {
-
-/// Returns the number that is all of a text; nullopt if the text is none.
-std::optional<std::uint64_t> number(std::string_view text) {
-  std::uint64_t out = 0;
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), out);
-  if (text.empty() || failure != std::errc() || end != text.data() + text.size()) {
-    return std::nullopt;
-  }
-  return out;
-}
-
-}  // namespace
-
 std::optional<ByteRange> parse_range(std::string_view header, std::uint64_t length,
                                      bool& is_unsatisfiable) {
   constexpr std::string_view kUnit = "bytes=";
@@ -28,8 +14,8 @@ std::optional<ByteRange> parse_range(std::string_view header, std::uint64_t leng
   if (!header.starts_with(kUnit) || dash == std::string_view::npos) return std::nullopt;
   const std::string_view before = header.substr(kUnit.size(), dash - kUnit.size());
   const std::string_view after = header.substr(dash + 1);
-  const auto first = number(before);
-  const auto last = number(after);
+  const auto first = parse_number<std::uint64_t>(before);
+  const auto last = parse_number<std::uint64_t>(after);
   if (before.empty() && last) {  // the last so many bytes
     is_unsatisfiable = *last == 0 || length == 0;
     if (is_unsatisfiable) return std::nullopt;

@@ -1,7 +1,5 @@
 #include "server/transport/http/curve_table.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <limits>
@@ -113,8 +111,8 @@ Outcome<HttpResponse> curve_table(const v1::Simulation& simulation,
     const auto found = std::find(existing.begin(), existing.end(), name);
     places.push_back(static_cast<std::size_t>(found - existing.begin()));
     if (found == existing.end()) {
-      violations.push_back({"columns", fmt::format("has no column {}{}", plain_excerpt(name),
-                                                   meant_text(name, existing))});
+      violations.add("columns", "has no column {}{}", plain_excerpt(name),
+                     meant_text(name, existing));
     }
   }
   if (!violations.empty()) return invalid(violations);

@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "server/contract/resource_names.h"
+#include "server/support/text.h"
 #include "server/transport/http/rest_answer.h"
 
 namespace tribodyn::server {
@@ -31,9 +32,7 @@ const Words& words_of(Form form) {
 
 /// Takes the text up to a separator off the front, without blanks at its ends, in lower case.
 std::string take(std::string_view& text, char separator) {
-  const std::size_t end = std::min(text.find(separator), text.size());
-  std::string_view part = text.substr(0, end);
-  text.remove_prefix(std::min(end + 1, text.size()));
+  std::string_view part = take_part(text, separator);
   while (!part.empty() && part.front() == ' ') part.remove_prefix(1);
   while (!part.empty() && part.back() == ' ') part.remove_suffix(1);
   std::string out(part);
@@ -91,9 +90,7 @@ std::optional<std::string_view> query_value(std::string_view target, std::string
   const std::size_t question = target.find('?');
   std::string_view query = question == std::string_view::npos ? "" : target.substr(question + 1);
   while (!query.empty()) {
-    const std::size_t end = std::min(query.find('&'), query.size());
-    const std::string_view pair = query.substr(0, end);
-    query.remove_prefix(std::min(end + 1, query.size()));
+    const std::string_view pair = take_part(query, '&');
     if (pair.starts_with(name) && pair.substr(name.size()).starts_with('=')) {
       return pair.substr(name.size() + 1);
     }

@@ -13,6 +13,7 @@
 #include "server/application/log_text.h"
 #include "server/contract/resource_names.h"
 #include "server/support/sha256.h"
+#include "server/support/text.h"
 #include "server/transport/http/byte_range.h"
 #include "server/transport/http/curve_table.h"
 #include "server/transport/http/history_format.h"
@@ -115,8 +116,7 @@ std::optional<TableRequest> take_table(Form form, HttpRequest& request, HttpResp
     }
     std::string_view list = *value;
     while (!list.empty()) {
-      const std::string_view name = list.substr(0, list.find(','));
-      list.remove_prefix(std::min(name.size() + 1, list.size()));
+      const std::string_view name = take_part(list, ',');
       if (!name.empty()) out.columns.emplace_back(name);
     }
   }

@@ -1,6 +1,5 @@
 #include "server/transport/http/rest_request.h"
 
-#include <fmt/format.h>
 #include <google/protobuf/io/coded_stream.h>
 #include <google/protobuf/util/field_mask_util.h>
 #include <google/protobuf/util/json_util.h>
@@ -8,7 +7,6 @@
 #include <google/protobuf/wire_format_lite.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <memory>
 #include <string_view>
@@ -19,6 +17,7 @@
 #include "server/application/errors.h"
 #include "server/contract/resource_names.h"
 #include "server/contract/violations.h"
+#include "server/support/text.h"
 #include "server/transport/http/body_errors.h"
 #include "server/transport/http/media_types.h"
 #include "server/transport/http/stream_format.h"
@@ -38,16 +37,6 @@ google::protobuf::util::TypeResolver& resolver() {
       google::protobuf::util::NewTypeResolverForDescriptorPool(
           kTypePrefix, google::protobuf::DescriptorPool::generated_pool()));
   return *kResolver;
-}
-
-/// Parses the whole text as a number of this type.
-template <class Number>
-std::optional<Number> number_of(const std::string& text) {
-  Number out{};
-  const char* end = text.data() + text.size();
-  const auto [stop, failure] = std::from_chars(text.data(), end, out);
-  if (failure != std::errc() || stop != end || text.empty()) return std::nullopt;
-  return out;
 }
 
 /// True if the text is UTF-8 as RFC 3629 has it. protobuf accepts other texts, logs an error, and
@@ -89,17 +78,17 @@ std::string set_field(Message& message, const FieldDescriptor& field, const std:
       if (text != "true" && text != "false") return "true or false";
       return put(text == "true", &Reflection::SetBool, &Reflection::AddBool);
     case FieldDescriptor::CPPTYPE_INT32:
-      if (const auto value = number_of<std::int32_t>(text)) {
+      if (const auto value = parse_number<std::int32_t>(text)) {
         return put(*value, &Reflection::SetInt32, &Reflection::AddInt32);
       }
       return "a whole number";
     case FieldDescriptor::CPPTYPE_INT64:
-      if (const auto value = number_of<std::int64_t>(text)) {
+      if (const auto value = parse_number<std::int64_t>(text)) {
         return put(*value, &Reflection::SetInt64, &Reflection::AddInt64);
       }
       return "a whole number";
     case FieldDescriptor::CPPTYPE_DOUBLE:
-      if (const auto value = number_of<double>(text)) {
+      if (const auto value = parse_number<double>(text)) {
         return put(*value, &Reflection::SetDouble, &Reflection::AddDouble);
       }
       return "a number";
@@ -160,9 +149,7 @@ std::vector<std::pair<std::string, std::string>> pairs_of(std::string_view query
                                                           Violations& violations) {
   std::vector<std::pair<std::string, std::string>> out;
   while (!query.empty()) {
-    const std::size_t end = std::min(query.find('&'), query.size());
-    std::string pair(query.substr(0, end));
-    query.remove_prefix(std::min(end + 1, query.size()));
+    std::string pair(take_part(query, '&'));
     if (pair.empty()) continue;
     for (char& character : pair) {
       if (character == '+') character = ' ';
@@ -173,9 +160,9 @@ std::vector<std::pair<std::string, std::string>> pairs_of(std::string_view query
     if (name && value) {
       out.emplace_back(*std::move(name), *std::move(value));
     } else {
-      violations.push_back({plain_excerpt(pair.substr(0, equals)),
-                            "a percent sign in the query must be followed by two hexadecimal "
-                            "digits; a percent sign itself is written %25"});
+      violations.add(plain_excerpt(pair.substr(0, equals)),
+                     "a percent sign in the query must be followed by two hexadecimal "
+                     "digits; a percent sign itself is written %25");
     }
   }
   return out;
@@ -189,23 +176,21 @@ void add_query(const RouteMatch& route, std::string_view query, Message& message
     const std::string first = name.substr(0, name.find('.'));
     if (name == kFormParameter) continue;  // says how the answer is written
     if (route.body_field == "*") {
-      violations.push_back(
-          {shown, "this method takes no query; its fields stand in the JSON body"});
+      violations.add(shown, "this method takes no query; its fields stand in the JSON body");
       continue;
     }
     const auto target = find_target(message, name);
     if (!target) {
-      violations.push_back(
-          {shown, "is no parameter of this method" + meant_text(name, field_names(type, route))});
+      violations.add(shown,
+                     "is no parameter of this method" + meant_text(name, field_names(type, route)));
     } else if (first == route.body_field) {
-      violations.push_back({shown, "stands in the JSON body, not in the query"});
+      violations.add(shown, "stands in the JSON body, not in the query");
     } else if (route.of_path.contains(target->field->name())) {
-      violations.push_back({shown, "stands in the path, not in the query"});
+      violations.add(shown, "stands in the path, not in the query");
     } else {
       const std::string expected = set_field(*target->message, *target->field, value);
       if (!expected.empty()) {
-        violations.push_back(
-            {shown, fmt::format("is \"{}\"; allowed: {}", plain_excerpt(value), expected)});
+        violations.add(shown, "is \"{}\"; allowed: {}", plain_excerpt(value), expected);
       }
     }
   }
@@ -239,10 +224,10 @@ void add_condition(const RouteMatch& route, std::string_view header, Message& me
   if (header.empty() || header == "*") return;
   const auto etag = etag_of(header);
   if (!etag) {
-    violations.push_back(
-        {"If-Match", "is " + plain_excerpt(header) + "; allowed: one etag in double quotes, or *"});
+    violations.add("If-Match",
+                   "is " + plain_excerpt(header) + "; allowed: one etag in double quotes, or *");
   } else if (!set_etag(route, *etag, message)) {
-    violations.push_back({"If-Match", "this method compares no etag"});
+    violations.add("If-Match", "this method compares no etag");
   }
 }
 
@@ -286,8 +271,8 @@ void add_last_event_id(const RouteMatch& route, std::string_view header, Message
   const auto fields = resume_fields(*route.method->descriptor);
   if (header.empty() || !route.method->descriptor->server_streaming() || !fields) return;
   if (!set_field(message, *fields->request, std::string(header)).empty()) {
-    violations.push_back(
-        {"Last-Event-ID", "is " + plain_excerpt(header) + "; allowed: the id of an event"});
+    violations.add("Last-Event-ID",
+                   "is " + plain_excerpt(header) + "; allowed: the id of an event");
   }
 }
 
@@ -310,8 +295,7 @@ std::optional<google::rpc::Status> write_request(const RouteMatch& route,
     const auto target = find_target(*beside_body, path);  // HttpRoutes has checked that it exists
     const std::string expected = set_field(*target->message, *target->field, value);
     if (!expected.empty()) {
-      violations.push_back(
-          {path, fmt::format("is \"{}\"; allowed: {}", plain_excerpt(value), expected)});
+      violations.add(path, "is \"{}\"; allowed: {}", plain_excerpt(value), expected);
     }
   }
   const std::size_t question = request.target.find('?');
@@ -327,7 +311,7 @@ std::optional<google::rpc::Status> write_request(const RouteMatch& route,
       violations.push_back(*std::move(violation));
     }
   } else if (!request.body.empty()) {
-    violations.push_back({"", "this method takes no body"});
+    violations.add("", "this method takes no body");
   }
   if (!violations.empty()) return invalid(violations);
   out.wire += beside_body->SerializeAsString();

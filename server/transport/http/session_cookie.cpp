@@ -9,6 +9,7 @@
 
 #include "server/application/errors.h"
 #include "server/support/sha256.h"
+#include "server/support/text.h"
 #include "server/transport/http/rest_answer.h"
 #include "server/transport/http/rest_call.h"
 
@@ -43,9 +44,7 @@ std::vector<std::string> cookies(const HttpRequest& request, std::string_view na
   std::vector<std::string> out;
   std::string_view rest = request.header("cookie");
   while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find(';'), rest.size());
-    std::string_view pair = rest.substr(0, end);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
+    std::string_view pair = take_part(rest, ';');
     while (pair.starts_with(' ')) pair.remove_prefix(1);
     if (pair.size() <= name.size() || !pair.starts_with(name) || pair[name.size()] != '=') continue;
     out.emplace_back(pair.substr(name.size() + 1));
