@@ -3,7 +3,9 @@
 #include <SQLiteCpp/Statement.h>
 #include <SQLiteCpp/Transaction.h>
 
+#include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -107,37 +109,25 @@ void start_token_log(Connection& db) {
   execute(db, "INSERT INTO token_log VALUES (1, 0, 0, ?)", Blob{random_bytes(32)});
 }
 
+static_assert(std::size(kSchemas) == kSchemaVersion);
+
 void bring_from(Connection& database, int from, int to, Microseconds now) {
-  const auto passes = [from, to](int version) { return from < version && version <= to; };
-  if (passes(1)) database.exec(kSchema1);
-  if (passes(2)) {
-    database.exec(kSchema2);
-    move_resources(database, now);
-    pin_simulations(database);
+  for (int version = from + 1; version <= to; ++version) {
+    database.exec(kSchemas[version - 1]);
+    if (version == 2) {
+      move_resources(database, now);
+      pin_simulations(database);
+    }
+    if (version == 3) split_ledgers(database);
+    if (version == 3 || version == 8 || version == 10) database.exec(kEventTriggers);
+    // It writes blocks as schema 5 has them.
+    if (from < 4 && version == std::clamp(to, 4, 5)) compress_histories(database);
+    if (version == 5) {
+      add_checksum_function(database);
+      add_checksums(database);
+    }
+    if (version == 9) start_token_log(database);
   }
-  if (passes(3)) {
-    database.exec(kSchema3);
-    split_ledgers(database);
-  }
-  if (passes(4)) database.exec(kSchema4);
-  if (passes(5)) database.exec(kSchema5);
-  if (passes(4)) compress_histories(database);  // writes blocks as schema 5 has them
-  if (passes(5)) {
-    add_checksum_function(database);
-    add_checksums(database);
-  }
-  if (passes(6)) database.exec(kSchema6);
-  if (passes(7)) database.exec(kSchema7);
-  if (passes(8)) database.exec(kSchema8);
-  if (passes(9)) {
-    database.exec(kSchema9);
-    start_token_log(database);
-  }
-  if (passes(10)) database.exec(kSchema10);
-  if (passes(11)) database.exec(kSchema11);
-  if (passes(12)) database.exec(kSchema12);
-  if (passes(13)) database.exec(kSchema13);
-  if (passes(14)) database.exec(kSchema14);
   database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
   database.exec("PRAGMA user_version = " + std::to_string(to));
 }

@@ -198,12 +198,6 @@ BEGIN SELECT RAISE(ABORT, 'no such change of state'); END;
 CREATE TRIGGER states_change_with_an_event BEFORE UPDATE OF state ON simulations
 WHEN NEW.sequence <> OLD.sequence + 1
 BEGIN SELECT RAISE(ABORT, 'a change of state is an event'); END;
-CREATE TRIGGER events_follow_one_another BEFORE INSERT ON events
-WHEN NEW.sequence <> 1 + (SELECT coalesce(max(sequence), 0) FROM events
-                          WHERE simulation = NEW.simulation)
-BEGIN SELECT RAISE(ABORT, 'an event follows the last one'); END;
-CREATE TRIGGER events_never_change BEFORE UPDATE ON events
-BEGIN SELECT RAISE(ABORT, 'an event never changes'); END;
 )sql";
 
 inline constexpr char kSchema4[] = R"sql(
@@ -334,12 +328,6 @@ SELECT simulation, sequence, time, state, attempt, reason FROM events_of_schema_
 ORDER BY max(time) OVER (PARTITION BY simulation ORDER BY sequence), simulation, sequence;
 DROP TABLE events_of_schema_7;
 
-CREATE TRIGGER events_follow_one_another BEFORE INSERT ON events
-WHEN NEW.sequence <> 1 + (SELECT coalesce(max(sequence), 0) FROM events
-                          WHERE simulation = NEW.simulation)
-BEGIN SELECT RAISE(ABORT, 'an event follows the last one'); END;
-CREATE TRIGGER events_never_change BEFORE UPDATE ON events
-BEGIN SELECT RAISE(ABORT, 'an event never changes'); END;
 CREATE TRIGGER events_have_a_simulation BEFORE INSERT ON events
 WHEN NOT EXISTS (SELECT 1 FROM simulations WHERE id = NEW.simulation)
 BEGIN SELECT RAISE(ABORT, 'an event belongs to a simulation'); END;
@@ -420,12 +408,6 @@ SELECT coalesce(e.project, s.project), e.number, e.simulation, e.sequence, e.tim
 FROM events_of_schema_9 e LEFT JOIN simulations s ON s.id = e.simulation;
 DROP TABLE events_of_schema_9;
 
-CREATE TRIGGER events_follow_one_another BEFORE INSERT ON events
-WHEN NEW.sequence <> 1 + (SELECT coalesce(max(sequence), 0) FROM events
-                          WHERE simulation = NEW.simulation)
-BEGIN SELECT RAISE(ABORT, 'an event follows the last one'); END;
-CREATE TRIGGER events_never_change BEFORE UPDATE ON events
-BEGIN SELECT RAISE(ABORT, 'an event never changes'); END;
 CREATE TRIGGER events_have_a_simulation BEFORE INSERT ON events
 WHEN NOT EXISTS (SELECT 1 FROM simulations WHERE id = NEW.simulation AND project = NEW.project)
 BEGIN SELECT RAISE(ABORT, 'an event belongs to a simulation of its project'); END;
@@ -583,5 +565,20 @@ BEGIN UPDATE projects SET simulations = simulations + 1 WHERE name = NEW.project
 CREATE TRIGGER removed_simulations_are_not_counted AFTER DELETE ON simulations
 BEGIN UPDATE projects SET simulations = simulations - 1 WHERE name = OLD.project; END;
 )sql";
+
+/// The triggers of each new table `events`: those of schemas 3, 8 and 10.
+inline constexpr char kEventTriggers[] = R"sql(
+CREATE TRIGGER events_follow_one_another BEFORE INSERT ON events
+WHEN NEW.sequence <> 1 + (SELECT coalesce(max(sequence), 0) FROM events
+                          WHERE simulation = NEW.simulation)
+BEGIN SELECT RAISE(ABORT, 'an event follows the last one'); END;
+
+CREATE TRIGGER events_never_change BEFORE UPDATE ON events
+BEGIN SELECT RAISE(ABORT, 'an event never changes'); END;
+)sql";
+
+inline constexpr const char* kSchemas[] = {kSchema1,  kSchema2,  kSchema3,  kSchema4, kSchema5,
+                                           kSchema6,  kSchema7,  kSchema8,  kSchema9, kSchema10,
+                                           kSchema11, kSchema12, kSchema13, kSchema14};
 
 }  // namespace tribodyn::server
