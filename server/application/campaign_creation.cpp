@@ -14,6 +14,7 @@
 #include "server/application/list_filter.h"
 #include "server/application/project_space.h"
 #include "server/application/request_text.h"
+#include "server/application/stored_messages.h"
 #include "server/contract/constraints.h"
 #include "server/contract/output_only.h"
 #include "server/simulation/campaign_inputs.h"
@@ -25,13 +26,6 @@ namespace tribodyn::server {
 namespace {
 
 constexpr std::size_t kMaximumSearchedBytes = 256 << 20;
-
-void set_revisions(const NewCampaign& campaign, v1::Campaign& out) {
-  out.set_lubricant_revision(campaign.lubricant_revision);
-  out.set_gear_set_revision(campaign.gear_set_revision);
-  out.set_surface_revision(campaign.surface_revision);
-  out.set_vehicle_revision(campaign.vehicle_revision);
-}
 
 /// Returns the hash of everything that the client set.
 std::string request_hash(const v1::Campaign& campaign) {
@@ -117,10 +111,8 @@ NewCampaign new_campaign(const v1::CreateCampaignRequest& request, const Campaig
   out.conditions = inputs.points.conditions;
   out.cost_seconds = estimate_cost(inputs).processor_seconds();
   out.budget = to_budget(inputs.requested.budget());
-  out.lubricant_revision = effective.lubricant_revision();
-  out.gear_set_revision = effective.gear_set_revision();
-  out.surface_revision = effective.surface_revision();
-  out.vehicle_revision = effective.vehicle_revision();
+  out.revisions = {effective.lubricant_revision(), effective.gear_set_revision(),
+                   effective.surface_revision(), effective.vehicle_revision()};
   out.labels = labels_of(inputs.requested);
   out.candidate_lubricants = {inputs.table.candidate_lubricants().begin(),
                               inputs.table.candidate_lubricants().end()};
@@ -130,7 +122,7 @@ NewCampaign new_campaign(const v1::CreateCampaignRequest& request, const Campaig
 /// Returns the campaign that a request with validate_only would create, without a name.
 v1::Campaign campaign_preview(const CampaignInputs& inputs, const NewCampaign& campaign) {
   v1::Campaign out = inputs.requested;
-  set_revisions(campaign, out);
+  set_revisions(campaign.revisions, out);
   out.set_state(v1::Campaign::RUNNING);
   out.set_candidates(campaign.candidates);
   out.set_points(campaign.candidates * campaign.conditions);
@@ -158,9 +150,8 @@ LubricantSearch lubricant_search(Application& application, const CallContext& ca
                                           ? query_by_computed_fields(query, read_page)
                                           : read_page(query);
     if (page.more && page.rows.size() <= static_cast<std::size_t>(kMaximumCandidateLubricants)) {
-      violations.push_back({"filter", fmt::format("the lubricants are larger than {} MB together; "
-                                                  "allowed: fewer",
-                                                  kMaximumSearchedBytes >> 20U)});
+      violations.add("filter", "the lubricants are larger than {} MB together; allowed: fewer",
+                     kMaximumSearchedBytes >> 20U);
     }
     for (const StoredResource& each : page.rows) {
       out.push_back(revision_name(relative_name(each.name), each.revision));
@@ -176,7 +167,7 @@ Outcome<v1::Campaign> create_campaign(Application& application,
                                       const CallContext& call) {
   Violations violations;
   check_request_id(request.request_id(), violations);
-  if (!request.has_campaign()) violations.push_back({"campaign", "not set"});
+  if (!request.has_campaign()) violations.add("campaign", "not set");
   if (!violations.empty()) return invalid(violations);
   v1::Campaign stated = request.campaign();
   keep_client_part(stated);
@@ -195,7 +186,7 @@ Outcome<v1::Campaign> create_campaign(Application& application,
   const NewCampaign campaign = new_campaign(request, *inputs, request_hash(stated), call);
   if (request.validate_only()) return campaign_preview(*inputs, campaign);
   if (auto full = project_full(application, call)) return *std::move(full);
-  if (application.jobs.is_stopping()) return shutting_down();
+  if (application.jobs.scheduler().is_stopping()) return shutting_down();
   WorkPlace place;
   if (auto refused = take_hours(application, campaign.cost_seconds, call, place)) {
     return *std::move(refused);

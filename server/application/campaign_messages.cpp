@@ -1,9 +1,9 @@
 #include "server/application/campaign_messages.h"
 
 #include <fmt/format.h>
-#include <google/protobuf/util/time_util.h>
 
 #include "server/application/errors.h"
+#include "server/application/stored_messages.h"
 
 namespace tribodyn::server {
 namespace {
@@ -13,8 +13,6 @@ static_assert(static_cast<int>(CampaignState::kPaused) == v1::Campaign::PAUSED);
 static_assert(static_cast<int>(CampaignState::kSucceeded) == v1::Campaign::SUCCEEDED);
 static_assert(static_cast<int>(CampaignState::kFailed) == v1::Campaign::FAILED);
 static_assert(static_cast<int>(CampaignState::kCancelled) == v1::Campaign::CANCELLED);
-
-using google::protobuf::util::TimeUtil;
 
 }  // namespace
 
@@ -37,17 +35,14 @@ v1::Campaign to_message(Application& application, const StoredCampaign& stored) 
   out.set_points_done(static_cast<int>(stored.points_done));
   out.set_points_refused(static_cast<int>(stored.points_refused));
   out.set_processor_seconds(stored.processor_seconds);
-  *out.mutable_create_time() = TimeUtil::MicrosecondsToTimestamp(stored.create_time);
+  *out.mutable_create_time() = timestamp_of(stored.create_time);
   if (stored.end_time) {
-    *out.mutable_end_time() = TimeUtil::MicrosecondsToTimestamp(*stored.end_time);
+    *out.mutable_end_time() = timestamp_of(*stored.end_time);
     if (const auto& keep = application.jobs.retention().keep) {
-      *out.mutable_expire_time() = TimeUtil::MicrosecondsToTimestamp(*stored.end_time + *keep);
+      *out.mutable_expire_time() = timestamp_of(*stored.end_time + *keep);
     }
   }
-  out.set_lubricant_revision(stored.lubricant_revision);
-  out.set_gear_set_revision(stored.gear_set_revision);
-  out.set_surface_revision(stored.surface_revision);
-  out.set_vehicle_revision(stored.vehicle_revision);
+  set_revisions(stored.revisions, out);
   out.set_input_hash(stored.input_hash);
   out.set_model_version(stored.model_version);
   out.set_request_id(stored.request_id);
@@ -65,7 +60,7 @@ google::rpc::Status no_campaign(const std::string& name) {
 
 google::rpc::Status campaign_turned_away(Application& application) {
   constexpr double kRetrySeconds = 60;  // campaigns take seconds to hours
-  if (application.jobs.is_stopping()) return shutting_down();
+  if (application.jobs.scheduler().is_stopping()) return shutting_down();
   return exhausted(v1::ERROR_REASON_TOO_MANY_WAITING,
                    fmt::format("too many campaigns run, or their candidates take too much memory; "
                                "try again in {:g} s",

@@ -158,22 +158,21 @@ std::optional<google::rpc::Status> taken(Application& application, const Resourc
 void check_promotion(const v1::PromoteCandidateRequest& request, const StoredCampaign& stored,
                      const v1::Campaign& table, Violations& violations) {
   if (request.candidate() < 0 || request.candidate() >= stored.candidates) {
-    violations.push_back({"candidate", fmt::format("candidate = {}; allowed: 0 to {}",
-                                                   request.candidate(), stored.candidates - 1)});
+    violations.add("candidate", "candidate = {}; allowed: 0 to {}", request.candidate(),
+                   stored.candidates - 1);
   }
   const bool has_surface = has_columns_of(table, "surface.");
   if (request.lubricant_id().empty() && request.surface_id().empty()) {
-    violations.push_back({"lubricant_id", "not set; allowed: an id"});
+    violations.add("lubricant_id", "not set; allowed: an id");
   }
   if (has_surface && request.surface_id().empty()) {
-    violations.push_back(
-        {"surface_id",
-         "not set; allowed: an id, because candidates have surface parameters of their own"});
+    violations.add(
+        "surface_id",
+        "not set; allowed: an id, because candidates have surface parameters of their own");
   }
   if (!has_surface && !request.surface_id().empty()) {
-    violations.push_back({"surface_id",
-                          "set; allowed: none, because all candidates have the surface of the "
-                          "campaign"});
+    violations.add("surface_id",
+                   "set; allowed: none, because all candidates have the surface of the campaign");
   }
 }
 
@@ -201,7 +200,7 @@ Outcome<v1::PromoteCandidateResponse> promote_candidate(Application& application
   if (!request.lubricant_id().empty()) {
     auto out = promoted<v1::Lubricant>(application, request, candidate, request.lubricant_id(),
                                        table.candidate_lubricants().empty()
-                                           ? stored.lubricant_revision
+                                           ? stored.revisions.lubricant
                                            : table.candidate_lubricants(request.candidate()),
                                        call, violations);
     if (!out.ok()) return out.error();
@@ -209,7 +208,7 @@ Outcome<v1::PromoteCandidateResponse> promote_candidate(Application& application
   }
   if (!request.surface_id().empty()) {
     auto out = promoted<v1::Surface>(application, request, candidate, request.surface_id(),
-                                     stored.surface_revision, call, violations);
+                                     stored.revisions.surface, call, violations);
     if (!out.ok()) return out.error();
     surface = std::move(out.message());
   }

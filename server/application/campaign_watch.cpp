@@ -34,7 +34,7 @@ class CampaignWatch final : public MessageSource<v1::CampaignEvent> {
 
   void observe(const std::weak_ptr<Observer>& observer) override {
     store_.observe_campaigns(observer);
-    jobs_.wake(observer);
+    jobs_.scheduler().wake(observer);
   }
 
   Step next(v1::CampaignEvent& out) override {

@@ -93,13 +93,10 @@ Outcome<v1::Campaign> append_candidates(Application& application,
       return to_message(application, stored);
     }
     if (auto refused = not_appendable(stored, request.name())) return *std::move(refused);
-    auto appended =
-        read_appended(stored, application.store.candidate_table(stored.id, call.limits), request,
-                      resource_lookup(application.store, call.project, call.limits),
-                      accepted_lookup(application.store, call.project,
-                                      {stored.lubricant_revision, stored.gear_set_revision,
-                                       stored.surface_revision, stored.vehicle_revision}),
-                      violations);
+    auto appended = read_appended(
+        stored, application.store.candidate_table(stored.id, call.limits), request,
+        resource_lookup(application.store, call.project, call.limits),
+        accepted_lookup(application.store, call.project, stored.revisions), violations);
     if (!appended) return invalid(violations);
     candidates.campaign = stored.id;
     candidates.candidates_before = stored.candidates;
@@ -110,7 +107,7 @@ Outcome<v1::Campaign> append_candidates(Application& application,
     candidates.candidate_lubricants = appended->candidate_lubricants;
     if (request.validate_only()) return append_preview(application, stored, candidates);
     if (auto full = project_full(application, call)) return *std::move(full);
-    if (application.jobs.is_stopping()) return shutting_down();
+    if (application.jobs.scheduler().is_stopping()) return shutting_down();
     WorkPlace place;
     if (auto refused = take_hours(application, candidates.cost_seconds, call, place)) {
       return *std::move(refused);

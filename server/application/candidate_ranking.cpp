@@ -83,11 +83,9 @@ Comparisons compare_best(Application& application, const v1::RankCandidatesReque
   const bool is_computed = figure.column.kind == TableColumn::Kind::kStored;
   std::optional<CampaignInputs> inputs;
   if (is_computed && !best.empty()) {
-    const std::vector<std::string> revisions = {stored.lubricant_revision, stored.gear_set_revision,
-                                                stored.surface_revision, stored.vehicle_revision};
-    inputs =
-        stored_campaign_inputs(stored, application.store.candidate_table(stored.id, call.limits),
-                               accepted_lookup(application.store, stored.project, revisions));
+    inputs = stored_campaign_inputs(
+        stored, application.store.candidate_table(stored.id, call.limits),
+        accepted_lookup(application.store, stored.project, stored.revisions));
     out.parameters = uncertain_parameters(request, *inputs);
   }
   std::size_t count = best.size();

@@ -32,7 +32,7 @@ bool have_equal_candidates(FigureSource& one, FigureSource& other) {
   const auto candidates = [](FigureSource& source) {
     v1::Campaign out = source.columns.table();
     out.clear_candidate_attributes();
-    out.set_lubricant_revision(source.stored.lubricant_revision);
+    out.set_lubricant_revision(source.stored.revisions.lubricant);
     return out.SerializeAsString();
   };
   return one.stored.candidates == other.stored.candidates && candidates(one) == candidates(other);
@@ -66,10 +66,10 @@ void DecisionTable::add(const v1::CandidateFigure& figure, const std::string& pa
       column && (column->kind == TableColumn::Kind::kPerCandidate ||
                  (column->kind == TableColumn::Kind::kStored && column->number != kRefusalNumber));
   if (!is_figure) {
-    violations.push_back(
-        {path + ".column",
-         column ? fmt::format("\"{}\" is no figure of candidates", plain_excerpt(name))
-                : fmt::format("no such column here{}", meant_text(name, columns.names()))});
+    violations.add(path + ".column",
+                   column
+                       ? fmt::format("\"{}\" is no figure of candidates", plain_excerpt(name))
+                       : fmt::format("no such column here{}", meant_text(name, columns.names())));
     return;
   }
   found_.push_back({std::move(*column), figure.aggregate(), source});
@@ -87,7 +87,7 @@ void DecisionTable::add(
     const std::string path = fmt::format("constraints[{}]", i);
     add(constraints[i].figure(), path + ".figure", violations);
     if (!constraints[i].has_minimum() && !constraints[i].has_maximum()) {
-      violations.push_back({path + ".minimum", "not set; allowed: this, maximum or both"});
+      violations.add(path + ".minimum", "not set; allowed: this, maximum or both");
     }
   }
 }
@@ -122,13 +122,13 @@ FigureSource* DecisionTable::find_source(const std::string& name, const std::str
   if (name.empty()) return &own_;
   const auto split = split_name(name);
   if (!split || (name.starts_with("projects/") && split->project != call_.project)) {
-    violations.push_back({path, fmt::format("\"{}\"; allowed: a campaign of the project {}",
-                                            plain_excerpt(name), call_.project)});
+    violations.add(path, "\"{}\"; allowed: a campaign of the project {}", plain_excerpt(name),
+                   call_.project);
     return nullptr;
   }
   auto stored = find_campaign(application_, std::string(split->relative), call_);
   if (!stored.ok()) {
-    violations.push_back({path, plain_excerpt(name) + " does not exist"});
+    violations.add(path, plain_excerpt(name) + " does not exist");
     return nullptr;
   }
   if (stored.message().id == own_.stored.id) return &own_;
@@ -137,10 +137,10 @@ FigureSource* DecisionTable::find_source(const std::string& name, const std::str
   }
   FigureSource& out = others_.emplace_back(application_, std::move(stored.message()), call_);
   if (!have_equal_candidates(own_, out)) {
-    violations.push_back(
-        {path, fmt::format("the candidates of {} are not those of {}; allowed: a campaign with "
-                           "the same lubricant and equal candidate_columns",
-                           name_of(out.stored), name_of(own_.stored))});
+    violations.add(path,
+                   "the candidates of {} are not those of {}; allowed: a campaign with "
+                   "the same lubricant and equal candidate_columns",
+                   name_of(out.stored), name_of(own_.stored));
   }
   Violations none;
   out.weights = condition_weights({}, out.columns.request(), none);

@@ -226,7 +226,8 @@ Outcome<v1::PurgeReport> purge_resource(Application& application, const Request&
     report.set_revisions(present.revision);  // numbered from 1 without gaps
     state(dependents);
     if (request.validate_only()) return report;
-    for (const std::int64_t id : dependents.unfinished) application.jobs.cancel(id, call.limits);
+    for (const std::int64_t id : dependents.unfinished)
+      application.jobs.scheduler().cancel(id, call.limits);
     for (const std::int64_t id : dependents.unfinished_campaigns) {
       application.jobs.campaigns().cancel(id, call.limits);
     }

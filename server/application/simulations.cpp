@@ -1,7 +1,6 @@
 #include "server/application/simulations.h"
 
 #include <fmt/format.h>
-#include <google/protobuf/util/time_util.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -18,6 +17,7 @@
 #include "server/application/request_text.h"
 #include "server/application/result_summary.h"
 #include "server/application/simulation_lookup.h"
+#include "server/application/stored_messages.h"
 #include "server/simulation/assumptions.h"
 #include "server/simulation/cost_estimate.h"
 #include "server/simulation/input_hash.h"
@@ -41,16 +41,6 @@ static_assert(static_cast<int>(StoredState::kCancelled) == v1::Simulation::CANCE
 
 static_assert(static_cast<int>(RequestedClass::kInteractive) == v1::SCHEDULING_CLASS_INTERACTIVE);
 static_assert(static_cast<int>(RequestedClass::kBulk) == v1::SCHEDULING_CLASS_BULK);
-
-using google::protobuf::util::TimeUtil;
-
-template <class Row>
-void set_revisions(const Row& row, v1::Simulation& out) {
-  out.set_lubricant_revision(row.lubricant_revision);
-  out.set_gear_set_revision(row.gear_set_revision);
-  out.set_surface_revision(row.surface_revision);
-  out.set_vehicle_revision(row.vehicle_revision);
-}
 
 /// Returns the time at which a requested deadline passes; nullopt if the request sets none.
 std::optional<Microseconds> deadline_time(const v1::Simulation& requested, Microseconds now) {
@@ -79,23 +69,20 @@ NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
           .scheduling_class = request.scheduling_class(),
           .cost_seconds = estimate_cost(inputs.effective).processor_seconds(),
           .labels = std::move(labels),
-          .lubricant_revision = effective.lubricant_revision(),
-          .gear_set_revision = effective.gear_set_revision(),
-          .surface_revision = effective.surface_revision(),
-          .vehicle_revision = effective.vehicle_revision()};
+          .revisions = {effective.lubricant_revision(), effective.gear_set_revision(),
+                        effective.surface_revision(), effective.vehicle_revision()}};
 }
 
 /// Returns the simulation that a request with validate_only would create, without a name.
 v1::Simulation preview(const SimulationInputs& inputs, const NewSimulation& simulation) {
   v1::Simulation out = inputs.requested;
-  set_revisions(simulation, out);
+  set_revisions(simulation.revisions, out);
   out.set_state(v1::Simulation::QUEUED);
   out.set_input_hash(simulation.key.input_hash);
   out.set_canonical_inputs(canonical_inputs(inputs));
   *out.mutable_cost_estimate() = estimate_cost(inputs.effective);
-  if (simulation.deadline_time) {
-    *out.mutable_deadline_time() = TimeUtil::MicrosecondsToTimestamp(*simulation.deadline_time);
-  }
+  if (simulation.deadline_time)
+    *out.mutable_deadline_time() = timestamp_of(*simulation.deadline_time);
   return out;
 }
 
@@ -111,7 +98,7 @@ v1::Simulation to_message(Application& application, const StoredSimulation& stor
   out.ParseFromString(stored.request);
   out.set_name(name_of(stored));
   out.set_state(static_cast<v1::Simulation::State>(stored.state));
-  set_revisions(stored, out);
+  set_revisions(stored.revisions, out);
   out.set_input_hash(stored.input_hash);
   out.set_attempt(stored.attempt);
   out.set_cache_hit(stored.cache_hit);
@@ -121,18 +108,12 @@ v1::Simulation to_message(Application& application, const StoredSimulation& stor
   out.set_etag(etag_of(stored));
   const auto& keep = application.jobs.retention().keep;
   if (keep && stored.end_time && !stored.is_pinned) {
-    *out.mutable_expire_time() = TimeUtil::MicrosecondsToTimestamp(*stored.end_time + *keep);
+    *out.mutable_expire_time() = timestamp_of(*stored.end_time + *keep);
   }
-  *out.mutable_create_time() = TimeUtil::MicrosecondsToTimestamp(stored.create_time);
-  if (stored.start_time) {
-    *out.mutable_start_time() = TimeUtil::MicrosecondsToTimestamp(*stored.start_time);
-  }
-  if (stored.end_time) {
-    *out.mutable_end_time() = TimeUtil::MicrosecondsToTimestamp(*stored.end_time);
-  }
-  if (stored.deadline_time) {
-    *out.mutable_deadline_time() = TimeUtil::MicrosecondsToTimestamp(*stored.deadline_time);
-  }
+  *out.mutable_create_time() = timestamp_of(stored.create_time);
+  if (stored.start_time) *out.mutable_start_time() = timestamp_of(*stored.start_time);
+  if (stored.end_time) *out.mutable_end_time() = timestamp_of(*stored.end_time);
+  if (stored.deadline_time) *out.mutable_deadline_time() = timestamp_of(*stored.deadline_time);
   if (stored.state == StoredState::kFailed) {
     out.mutable_error()->set_reason(stored.error_reason);
     out.mutable_error()->set_message(stored.error_message);
@@ -172,7 +153,7 @@ std::optional<Outcome<v1::Simulation>> earlier_answer(Application& application,
       application.store.simulation_of_request(call.project, request.request_id(), call.limits);
   if (!stored) return std::nullopt;
   if (stored->request_hash != sha256(text)) return request_id_taken(*stored, request, text);
-  if (stored->state == StoredState::kQueued) application.jobs.ensure_queued(*stored);
+  if (stored->state == StoredState::kQueued) application.jobs.scheduler().ensure_queued(*stored);
   return to_message(application, *stored);
 }
 
@@ -191,7 +172,7 @@ void set_result(Application& application, v1::SimulationView view, v1::Simulatio
 bool is_ascending(const std::string& order_by, Violations& violations) {
   if (order_by == "create_time" || order_by == "create_time asc") return true;
   if (!order_by.empty() && order_by != "create_time desc") {
-    violations.push_back({"order_by", "allowed: create_time, followed by nothing, asc or desc"});
+    violations.add("order_by", "allowed: create_time, followed by nothing, asc or desc");
   }
   return false;
 }
@@ -218,7 +199,7 @@ void log_submission(const CallContext& call, const NewSimulation& simulation,
 }
 
 google::rpc::Status no_place(Application& application, double retry_seconds) {
-  if (application.jobs.is_stopping()) return shutting_down();
+  if (application.jobs.scheduler().is_stopping()) return shutting_down();
   return exhausted(
       v1::ERROR_REASON_TOO_MANY_WAITING,
       fmt::format("the queue has no place for this simulation: at most {} simulations and {:.3g} "
@@ -236,7 +217,7 @@ Outcome<v1::Simulation> create_simulation(Application& application,
                                           const CallContext& call) {
   Violations violations;
   check_request_id(request.request_id(), violations);
-  if (!request.has_simulation()) violations.push_back({"simulation", "not set"});
+  if (!request.has_simulation()) violations.add("simulation", "not set");
   check_choice(request, "scheduling_class", violations);
   check_counts(request.simulation(), "simulation", violations);  // first: work grows with them
   if (!violations.empty()) return invalid(violations);
@@ -258,7 +239,7 @@ Outcome<v1::Simulation> create_simulation(Application& application,
   if (auto full = project_full(application, call)) return *std::move(full);
   WorkPlace place;
   auto refused = take_hours(application, simulation.cost_seconds, call, place);
-  const SimulationJobs::Submitted submitted = application.jobs.submit(
+  const Scheduler::Admitted submitted = application.jobs.scheduler().admit(
       simulation, std::make_shared<const SimulationInputs>(std::move(*inputs)), call.limits,
       !refused);
   const AddOutcome& added = submitted.added;
@@ -429,7 +410,7 @@ Outcome<google::protobuf::Empty> delete_simulation(Application& application,
     }
     const StoredSimulation& stored = found.message();
     if (auto refused = undeletable(stored, request)) return *std::move(refused);
-    if (!has_ended(stored.state)) application.jobs.cancel(stored.id, call.limits);
+    if (!has_ended(stored.state)) application.jobs.scheduler().cancel(stored.id, call.limits);
     if (application.store.remove_simulation(stored.id, stored.request, call.limits) ==
         Store::Removal::kDone) {
       return Empty();
@@ -467,7 +448,7 @@ Outcome<v1::Simulation> cancel_simulation(Application& application,
   auto found = find_simulation(application, request.name(), call);
   if (!found.ok()) return found.error();
   StoredSimulation& stored = found.message();
-  const auto event = application.jobs.cancel(stored.id, call.limits);
+  const auto event = application.jobs.scheduler().cancel(stored.id, call.limits);
   if (!event) {
     v1::GetSimulationRequest now;
     now.set_name(request.name());

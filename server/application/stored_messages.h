@@ -31,19 +31,27 @@ std::optional<Resource> body_message(const std::string& body) {
   return out;
 }
 
+inline google::protobuf::Timestamp timestamp_of(Microseconds time) {
+  return google::protobuf::util::TimeUtil::MicrosecondsToTimestamp(time);
+}
+
 /// Sets what the store knows of a revision. An older revision bears its revision in its name.
 template <class Resource>
 void set_stored_fields(const StoredResource& stored, Resource& out) {
-  using google::protobuf::util::TimeUtil;
   out.set_name(stored.is_present ? stored.name : revision_name(stored.name, stored.revision));
   out.set_etag(etag_of(stored));
   out.set_revision(stored.revision);
-  *out.mutable_create_time() = TimeUtil::MicrosecondsToTimestamp(stored.create_time);
-  *out.mutable_revision_create_time() =
-      TimeUtil::MicrosecondsToTimestamp(stored.revision_create_time);
-  if (stored.delete_time) {
-    *out.mutable_delete_time() = TimeUtil::MicrosecondsToTimestamp(*stored.delete_time);
-  }
+  *out.mutable_create_time() = timestamp_of(stored.create_time);
+  *out.mutable_revision_create_time() = timestamp_of(stored.revision_create_time);
+  if (stored.delete_time) *out.mutable_delete_time() = timestamp_of(*stored.delete_time);
+}
+
+template <class Job>  // v1::Simulation or v1::Campaign
+void set_revisions(const ResourceRevisions& revisions, Job& out) {
+  out.set_lubricant_revision(revisions.lubricant);
+  out.set_gear_set_revision(revisions.gear_set);
+  out.set_surface_revision(revisions.surface);
+  out.set_vehicle_revision(revisions.vehicle);
 }
 
 /// A stored revision as it is answered. Returns nullopt if its body does not parse.

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <google/protobuf/util/time_util.h>
 
 #include <algorithm>
 #include <atomic>
@@ -13,12 +12,12 @@
 #include "server/application/paging.h"
 #include "server/application/simulation_lookup.h"
 #include "server/application/simulations.h"
+#include "server/application/stored_messages.h"
 #include "server/application/streams.h"
 
 namespace tribodyn::server {
 namespace {
 
-using google::protobuf::util::TimeUtil;
 using std::chrono::steady_clock;
 
 constexpr double kRetrySeconds = 10;  // for a place among the watches with a filter
@@ -111,7 +110,7 @@ class Watch : public MessageSource<v1::SimulationEvent> {
     observer_ = observer;
     for (const auto& each : std::exchange(channels_, {})) each->observe(observer);
     if (!is_named_) store_.observe(observer);
-    jobs_.wake(observer);
+    jobs_.scheduler().wake(observer);
   }
 
   Step next(v1::SimulationEvent& out) override {
@@ -186,7 +185,7 @@ class Watch : public MessageSource<v1::SimulationEvent> {
     told_through_ = events_.size() == 1 ? read_through_ : event.number;
     set_common(name_of(event), event.state, event.attempt, event.sequence, out);
     out.set_event_number(event.number);
-    *out.mutable_time() = TimeUtil::MicrosecondsToTimestamp(event.time);
+    *out.mutable_time() = timestamp_of(event.time);
     out.set_kind(event.state == StoredState::kDeleted ? v1::SimulationEvent::DELETED
                                                       : v1::SimulationEvent::STATE_CHANGE);
     out.set_reason(event.reason);

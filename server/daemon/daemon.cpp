@@ -144,7 +144,8 @@ void shut_down(const Settings& settings, const sigset_t& signals, GrpcServer& se
   notify_service_manager("STOPPING=1");
   server.set_serving(false);
   if (!settings.port_file.empty()) std::filesystem::remove(settings.port_file);
-  if (!jobs.drain(to_milliseconds(settings.drain_seconds), [] { return hurry.load(); })) {
+  if (!jobs.scheduler().drain(to_milliseconds(settings.drain_seconds),
+                              [] { return hurry.load(); })) {
     spdlog::info("running simulations are queued again");
   }
   jobs.stop();
@@ -189,7 +190,7 @@ std::function<HttpResponse(const HttpRequest&)> metrics_page(SimulationJobs& job
   return [&jobs](const HttpRequest&) {
     HttpResponse out;
     out.headers["Content-Type"] = "text/plain; version=0.0.4; charset=utf-8";
-    out.body = jobs.metrics().text(jobs.occupancy());
+    out.body = jobs.metrics().text(jobs.scheduler().occupancy());
     return out;
   };
 }
@@ -287,8 +288,7 @@ int serve(const Settings& settings, const std::vector<ListenAddress>& addresses,
   spdlog::info("tribodynd " TRIBODYN_VERSION " ({}) listens on {} with {} threads", kModelVersion,
                fmt::join(server.addresses(), " and "), options.threads);
   spdlog::info(
-      "programs that do not use the Unix socket of the owner need a token; the owner's is "
-      "in {}",
+      "programs that do not use the Unix socket of the owner need a token; the owner's is in {}",
       owner_token_file(settings.database).string());
   if (!settings.port_file.empty()) write_port_file(settings.port_file, server.addresses());
   notify_service_manager("READY=1");

@@ -92,10 +92,7 @@ void CampaignJobs::load(Running& running) {
 
 /// Reads the inputs of a campaign from the store. Throws Refusal or StoreError.
 std::shared_ptr<const CampaignInputs> CampaignJobs::stored_inputs(const StoredCampaign& stored) {
-  const ResourceLookup lookup =
-      accepted_lookup(store_, stored.project,
-                      {stored.lubricant_revision, stored.gear_set_revision, stored.surface_revision,
-                       stored.vehicle_revision});
+  const ResourceLookup lookup = accepted_lookup(store_, stored.project, stored.revisions);
   CampaignInputs out = stored_campaign_inputs(stored, store_.candidate_table(stored.id), lookup);
   out.table.Clear();  // the columns are in `points`
   return std::make_shared<CampaignInputs>(std::move(out));

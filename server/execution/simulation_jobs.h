@@ -54,23 +54,12 @@ class SimulationJobs {
   /// wrong golden case, starts nothing and returns a sentence that says what is wrong.
   std::string start();
 
-  using Submitted = Scheduler::Admitted;
-  /// As Scheduler::admit.
-  Submitted submit(const NewSimulation& simulation,
-                   std::shared_ptr<const SimulationInputs> inputs = nullptr,
-                   const CallLimits& limits = {}, bool may_wait = true) {
-    return scheduler_.admit(simulation, std::move(inputs), limits, may_wait);
-  }
+  /// Admits, queues and cancels simulations.
+  Scheduler& scheduler() { return scheduler_; }
   /// Returns the estimate of the simulations and campaigns of a principal that wait and run [s of
   /// one processor].
   double unfinished_seconds(const std::string& principal) const {
     return scheduler_.unfinished_seconds(principal) + campaigns_.unfinished_seconds(principal);
-  }
-  /// As Scheduler::ensure_queued.
-  void ensure_queued(const StoredSimulation& simulation) { scheduler_.ensure_queued(simulation); }
-  /// As Scheduler::cancel.
-  std::optional<StoredEvent> cancel(std::int64_t id, const CallLimits& limits = {}) {
-    return scheduler_.cancel(id, limits);
   }
 
   /// Returns the latest progress of a running simulation; nullopt if it does not run.
@@ -93,23 +82,12 @@ class SimulationJobs {
                       const CallLimits& limits = {});
   /// Returns the channel of a simulation; null if it has ended, or has none yet.
   std::shared_ptr<ProgressChannel> channel(std::int64_t id) const { return board_.find(id); }
-  /// Notifies the observer at least four times per heartbeat interval.
-  void wake(const std::weak_ptr<Observer>& observer) { scheduler_.wake(observer); }
   const QueueLimits& limits() const { return limits_; }
   const Retention& retention() const { return retention_; }
   CampaignJobs& campaigns() { return campaigns_; }
   Metrics& metrics() { return metrics_; }
-  Occupancy occupancy() const { return scheduler_.occupancy(); }
-  /// Returns the number of deadlines of simulations that have not ended.
-  std::size_t deadlines() const { return scheduler_.deadlines(); }
   std::chrono::milliseconds heartbeat() const { return heartbeat_; }
 
-  /// As Scheduler::is_stopping.
-  bool is_stopping() const { return scheduler_.is_stopping(); }
-  /// As Scheduler::drain.
-  bool drain(std::chrono::milliseconds limit, const std::function<bool()>& give_up) {
-    return scheduler_.drain(limit, give_up);
-  }
   /// Stops the running simulations, which become QUEUED in the store, and ends all threads.
   void stop();
 

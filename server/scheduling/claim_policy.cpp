@@ -259,11 +259,11 @@ void ClaimPolicy::end(std::int64_t id) {
   running_.erase(running);
 }
 
-void ClaimPolicy::requeue(std::int64_t id, bool alone) {
+void ClaimPolicy::requeue(std::int64_t id) {
   const auto running = running_.find(id);
   if (running == running_.end()) return;
   QueuedJob job = running->second.job;
-  job.alone = alone;
+  job.alone = false;
   end(id);
   queue_.push(job);
 }

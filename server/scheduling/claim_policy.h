@@ -82,7 +82,7 @@ class ClaimPolicy {
   /// Removes a job that waits or runs. Jobs that wait for its result return to the queue.
   void end(std::int64_t id);
   /// Moves a running job back to the queue.
-  void requeue(std::int64_t id, bool alone);
+  void requeue(std::int64_t id);
 
   bool is_waiting(std::int64_t id) const { return queue_.contains(id) || parked_.contains(id); }
   bool is_running(std::int64_t id) const { return running_.contains(id); }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "server/support/value_of.h"
+
 namespace tribodyn::server {
 namespace {
 
@@ -15,21 +17,12 @@ constexpr Microseconds kDeadlineRetryDelay = 1'000'000;
 /// reads the inputs of other simulations from the store.
 constexpr std::size_t kMostKnownBytes = 16 << 20;
 
-Submission submission_of(AddOutcome::Kind kind) {
-  switch (kind) {
-    case AddOutcome::Kind::kQueued:
-      return Submission::kQueued;
-    case AddOutcome::Kind::kServed:
-      return Submission::kCacheHit;
-    case AddOutcome::Kind::kRepeated:
-      return Submission::kRepeated;
-    case AddOutcome::Kind::kRequestIdTaken:
-      return Submission::kInvalid;
-    case AddOutcome::Kind::kNoPlace:
-      break;
-  }
-  return Submission::kTurnedAway;
-}
+constexpr std::pair<AddOutcome::Kind, Submission> kSubmissions[] = {
+    {AddOutcome::Kind::kQueued, Submission::kQueued},
+    {AddOutcome::Kind::kServed, Submission::kCacheHit},
+    {AddOutcome::Kind::kRepeated, Submission::kRepeated},
+    {AddOutcome::Kind::kRequestIdTaken, Submission::kInvalid},
+    {AddOutcome::Kind::kNoPlace, Submission::kTurnedAway}};
 
 }  // namespace
 
@@ -79,6 +72,20 @@ std::size_t Scheduler::resume() {
   return queued;
 }
 
+/// Returns what the lease needs of a simulation with these inputs.
+Scheduler::Known Scheduler::known_of(const StoredSimulation& stored,
+                                     std::shared_ptr<const SimulationInputs> inputs) {
+  const std::size_t bytes = inputs->effective.SpaceUsedLong();
+  return {.inputs = std::move(inputs),
+          .bytes = bytes,
+          .project = stored.project,
+          .input_hash = stored.input_hash,
+          .is_forced = stored.is_forced,
+          .request_id = stored.request_id,
+          .name = server::name_of(stored),
+          .create_time = stored.create_time};
+}
+
 /// Keeps the inputs if there is room. Requires the lock.
 void Scheduler::keep(std::int64_t id, Known known) {
   if (known_bytes_ + known.bytes > kMostKnownBytes) return;
@@ -120,7 +127,7 @@ Scheduler::Admitted Scheduler::admit(const NewSimulation& simulation,
     throw;
   }
   metrics_.observe(Phase::kStore, watch.seconds());
-  metrics_.count(submission_of(added.kind));
+  metrics_.count(value_of(kSubmissions, added.kind, Submission::kTurnedAway));
   if (added.kind != AddOutcome::Kind::kQueued) {
     release();
     return {added, admission.retry_seconds};
@@ -128,19 +135,9 @@ Scheduler::Admitted Scheduler::admit(const NewSimulation& simulation,
   if (simulation.deadline_time) timekeeper_.set_deadline(added.id, *simulation.deadline_time);
   job.id = added.id;
   Known known;
-  if (inputs) {
-    known.bytes = inputs->effective.SpaceUsedLong();
-    known.inputs = std::move(inputs);
-    known.project = simulation.project;
-    known.input_hash = simulation.key.input_hash;
-    known.is_forced = simulation.is_forced;
-    known.request_id = simulation.request_id;
-    known.name = server::name_of(added.stored);
-    known.create_time = added.stored.create_time;
-    known.is_loaded = true;
-  }
+  if (inputs) known = known_of(added.stored, std::move(inputs));
   const std::lock_guard lock(mutex_);
-  if (known.is_loaded) keep(job.id, std::move(known));
+  if (known.inputs) keep(job.id, std::move(known));
   policy_.push(job);
   note_change();
   return {added, 0};

@@ -148,7 +148,7 @@ class Scheduler {
   using SteadyTime = std::chrono::steady_clock::time_point;
   /// What the scheduler keeps of a waiting simulation for its lease.
   struct Known {
-    std::shared_ptr<const SimulationInputs> inputs;  ///< null: load() reads them from the store
+    std::shared_ptr<const SimulationInputs> inputs;  ///< null: load() reads all from the store
     std::size_t bytes = 0;
     std::string project;
     std::string input_hash;
@@ -156,7 +156,6 @@ class Scheduler {
     std::string request_id;
     std::string name;
     Microseconds create_time = 0;
-    bool is_loaded = false;  ///< all of the above are known
   };
   struct Leased {
     int attempt = 1;
@@ -178,6 +177,8 @@ class Scheduler {
   std::optional<Lease> start(const Known& known, Lease lease, const std::string& worker,
                              const std::string& platform);
   std::optional<Lease> begin(const std::string& worker, const Lease* lender, bool& has_begun);
+  static Known known_of(const StoredSimulation& stored,
+                        std::shared_ptr<const SimulationInputs> inputs);
   Known load(std::int64_t id, const StopSignal& stop);
   void keep(std::int64_t id, Known known);
   Known take(std::int64_t id);
@@ -188,8 +189,7 @@ class Scheduler {
   void publish(std::int64_t id, const std::optional<StoredEvent>& event);
   void end_otherwise(std::int64_t id, const std::optional<StoredEvent>& event);
   void expire(std::int64_t id);
-  void end(std::int64_t id);
-  void requeue(std::int64_t id, bool alone);
+  void end(std::int64_t id, bool goes_back);
   void note_change();
   bool is_current(const Lease& lease) const;
 

@@ -79,26 +79,19 @@ Scheduler::Known Scheduler::load(std::int64_t id, const StopSignal& stop) {
   if (!request.ParseFromString(stored->request)) {
     throw Refusal("STORED_REQUEST_UNREADABLE", "the stored request cannot be read");
   }
-  set_accepted_names(*stored, request);
+  set_accepted_names(stored->revisions, request);
   Violations violations;
   auto inputs = retry_on_store_error(id, stop, [&] {
     violations.clear();
-    return read_simulation(request, accepted_lookup(store_, *stored), "simulation", violations);
+    return read_simulation(request, accepted_lookup(store_, stored->project, stored->revisions),
+                           "simulation", violations);
   });
   if (!inputs) {
     throw Refusal("STORED_REQUEST_INVALID",
                   violations.front().field + ": " + violations.front().description);
   }
-  Known out;
-  out.project = stored->project;
-  out.input_hash = input_hash(*inputs);
-  out.bytes = inputs->effective.SpaceUsedLong();
-  out.inputs = std::make_shared<const SimulationInputs>(std::move(*inputs));
-  out.is_forced = stored->is_forced;
-  out.request_id = stored->request_id;
-  out.name = server::name_of(*stored);
-  out.create_time = stored->create_time;
-  out.is_loaded = true;
+  stored->input_hash = input_hash(*inputs);
+  Known out = known_of(*stored, std::make_shared<const SimulationInputs>(std::move(*inputs)));
   metrics_.observe(Phase::kValidation, watch.seconds());
   return out;
 }
@@ -118,7 +111,7 @@ std::optional<Lease> Scheduler::lease_of(const QueuedJob& job, const std::string
   std::optional<Lease> out;
   bool waits = false;
   run_or_fail(lease, [&] {
-    if (!known.is_loaded) known = load(job.id, *lease.stop);
+    if (!known.inputs) known = load(job.id, *lease.stop);
     lease.name = known.name;
     {
       const std::lock_guard lock(mutex_);
@@ -135,7 +128,7 @@ std::optional<Lease> Scheduler::lease_of(const QueuedJob& job, const std::string
     }
     out = start(known, lease, worker, platform);
   });
-  if (!out && !waits) end(job.id);
+  if (!out && !waits) end(job.id, false);
   return out;
 }
 
@@ -146,8 +139,7 @@ std::optional<Lease> Scheduler::start(const Known& known, Lease lease, const std
   const double waited =
       std::max(0.0, 1e-6 * static_cast<double>(options_.clock() - known.create_time));
   const ResultKey key{known.input_hash, kModelVersion, platform};
-  const Microseconds lease_time =
-      std::chrono::duration_cast<std::chrono::microseconds>(options_.lease).count();
+  const Microseconds lease_time = std::chrono::microseconds(options_.lease).count();
   const auto started = retry_on_store_error(lease.id, *lease.stop, [&] {
     const Microseconds now = options_.clock();
     return store_.mark_running(lease.id, now, key, {worker, now + lease_time});

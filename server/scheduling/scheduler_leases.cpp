@@ -25,10 +25,8 @@ struct Timings {
 void log_computed(const Lease& lease, const std::string& request_id, const std::string& input_hash,
                   const Timings& timings) {
   spdlog::info(
-      "event=simulation_computed simulation={} "
-      "request_id={} input_hash={} "
-      "waited_seconds={:.6f} computed_seconds={:.6f} "
-      "stored_seconds={:.6f}",
+      "event=simulation_computed simulation={} request_id={} input_hash={} waited_seconds={:.6f} "
+      "computed_seconds={:.6f} stored_seconds={:.6f}",
       name_of(lease), request_id, input_hash, timings.waited_seconds, timings.computed_seconds,
       timings.stored_seconds);
 }
@@ -70,9 +68,9 @@ void Scheduler::extend(const Lease& lease, double used_seconds) {
     if (now - leased.written < options_.lease / 3) return;
     leased.written = now;
   }
-  const auto time = std::chrono::duration_cast<std::chrono::microseconds>(options_.lease);
+  const Microseconds lease_time = std::chrono::microseconds(options_.lease).count();
   try {
-    store_.extend_lease(lease.id, lease.attempt, options_.clock() + time.count());
+    store_.extend_lease(lease.id, lease.attempt, options_.clock() + lease_time);
   } catch (const StoreError& error) {  // while the server runs, the lease in memory decides
     spdlog::error("{}: {}", name_of(lease), error.what());
   }
@@ -92,7 +90,7 @@ void Scheduler::return_slice(const Lease& lease, double used_seconds, bool goes_
     const std::lock_guard lock(mutex_);
     leased_.erase(lease.id);
     policy_.computed(lease.id, used_seconds);
-    goes_on ? policy_.requeue(lease.id, false) : policy_.end(lease.id);
+    goes_on ? policy_.requeue(lease.id) : policy_.end(lease.id);
     note_change();
   }
   ended_.notify_all();
@@ -144,7 +142,7 @@ void Scheduler::complete(const Lease& lease, internal::v1::ComputeResult result)
     leased_.at(lease.id).is_computed = false;
     return;
   }
-  goes_back ? requeue(lease.id, false) : end(lease.id);
+  end(lease.id, goes_back);
 }
 
 void Scheduler::save(const Lease& lease, internal::v1::ComputeResult& result) {
@@ -203,19 +201,13 @@ bool Scheduler::stopped(const Lease& lease) {
 }
 
 void Scheduler::fail_on_defect(const Lease& lease, const std::string& cause) {
-  spdlog::error(
-      "event=internal_error simulation={} "
-      "cause=\"{}\"",
-      name_of(lease), cause);
+  spdlog::error("event=internal_error simulation={} cause=\"{}\"", name_of(lease), cause);
   fail(lease, "INTERNAL", "internal error; the server's log states its cause");
 }
 
 void Scheduler::fail(const Lease& lease, const std::string& reason, const std::string& message) {
   // The message may quote inputs, so only the reason is logged.
-  spdlog::warn(
-      "event=simulation_failed simulation={} "
-      "reason={}",
-      name_of(lease), reason);
+  spdlog::warn("event=simulation_failed simulation={} reason={}", name_of(lease), reason);
   const auto event = retry_on_store_error(lease.id, *lease.stop, [&] {
     return store_.mark_failed(lease.id, options_.clock(), reason, message);
   });
@@ -244,21 +236,12 @@ void Scheduler::publish(std::int64_t id, const std::optional<StoredEvent>& event
   }
 }
 
-void Scheduler::end(std::int64_t id) {
+/// Forgets the lease of a job, which `goes_back` to the queue or has ended.
+void Scheduler::end(std::int64_t id, bool goes_back) {
   {
     const std::lock_guard lock(mutex_);
     leased_.erase(id);
-    policy_.end(id);
-    note_change();
-  }
-  ended_.notify_all();
-}
-
-void Scheduler::requeue(std::int64_t id, bool alone) {
-  {
-    const std::lock_guard lock(mutex_);
-    leased_.erase(id);
-    policy_.requeue(id, alone);
+    goes_back ? policy_.requeue(id) : policy_.end(id);
     note_change();
   }
   ended_.notify_all();
@@ -293,8 +276,7 @@ void Scheduler::expire_leases() {
       if (event && event->state == StoredState::kFailed) metrics_.count(SimulationOutcome::kFailed);
       spdlog::warn("event=lease_expired simulation={} attempt={}", name_of(lease), lease.attempt);
       publish(lease.id, event);
-      const bool waits = event && event->state == StoredState::kQueued;
-      waits ? requeue(lease.id, false) : end(lease.id);
+      end(lease.id, event && event->state == StoredState::kQueued);
     } catch (const StoreError& error) {  // tried again at the next tick
       spdlog::error("{}: {}", name_of(lease), error.what());
     }

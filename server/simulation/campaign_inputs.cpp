@@ -80,20 +80,17 @@ void check_attributes(const v1::Campaign& requested, const v1::Campaign& table,
     const v1::CandidateAttribute& each = table.candidate_attributes(i);
     const std::string path = fmt::format("candidate_attributes[{}]", i);
     if (!is_column_name(each.name())) {
-      violations.push_back(
-          {path + ".name", fmt::format("\"{}\"; allowed: 1 to {} letters, digits, '-', '_' and '.'",
-                                       plain_excerpt(each.name()), kMaximumAttributeName)});
+      violations.add(path + ".name", "\"{}\"; allowed: 1 to {} letters, digits, '-', '_' and '.'",
+                     plain_excerpt(each.name()), kMaximumAttributeName);
     } else if (!taken.insert(each.name()).second) {
-      violations.push_back(
-          {path + ".name",
-           fmt::format("\"{}\" is the name of another column; choose another one", each.name())});
+      violations.add(path + ".name", "\"{}\" is the name of another column; choose another one",
+                     each.name());
     }
     const int texts = each.texts_size(), numbers = each.values_size();
     if ((texts == 0) == (numbers == 0) || texts + numbers != candidates) {
-      violations.push_back(
-          {path, fmt::format("{} texts and {} values; allowed: {} of one kind, one for each "
-                             "candidate",
-                             texts, numbers, candidates)});
+      violations.add(path,
+                     "{} texts and {} values; allowed: {} of one kind, one for each candidate",
+                     texts, numbers, candidates);
     }
   }
 }
@@ -102,10 +99,9 @@ void check_weights(const v1::Campaign& campaign, Violations& violations) {
   const int weights = campaign.condition_weights_size();
   const int conditions = condition_count(campaign);
   if (weights == 0 || weights == conditions) return;
-  violations.push_back(
-      {"condition_weights", fmt::format("{} weights; allowed: none, or one for each of the {} "
-                                        "conditions",
-                                        weights, conditions)});
+  violations.add("condition_weights",
+                 "{} weights; allowed: none, or one for each of the {} conditions", weights,
+                 conditions);
 }
 
 /// Checks what read_points() does not see.
@@ -119,8 +115,8 @@ void check_rest(const v1::Campaign& requested, const v1::Campaign& table, Violat
   rest.set_lubricant_filter(requested.lubricant_filter());
   check_message(rest, "", violations);
   if (requested.labels_size() > kMaximumLabels) {
-    violations.push_back({"labels", fmt::format("{} labels; allowed: at most {}",
-                                                requested.labels_size(), kMaximumLabels)});
+    violations.add("labels", "{} labels; allowed: at most {}", requested.labels_size(),
+                   kMaximumLabels);
   } else {
     check_labels(requested.labels(), "labels", violations);
   }
@@ -187,10 +183,10 @@ v1::Campaign stored_request(const StoredCampaign& stored, const std::string& tab
   if (!out.ParseFromString(stored.request) || !out.MergeFromString(table)) unreadable_request();
   keep_first_candidates(stored.candidates, out);  // others may have been added since it was read
   // An older server may have accepted it with other defaults.
-  out.set_lubricant(stored.lubricant_revision);
-  out.set_gear_set(stored.gear_set_revision);
-  out.set_surface(stored.surface_revision);
-  out.set_vehicle(stored.vehicle_revision);
+  out.set_lubricant(stored.revisions.lubricant);
+  out.set_gear_set(stored.revisions.gear_set);
+  out.set_surface(stored.revisions.surface);
+  out.set_vehicle(stored.revisions.vehicle);
   return out;
 }
 
@@ -201,26 +197,26 @@ v1::Campaign further_candidates(const v1::Campaign& campaign, const v1::Campaign
                                 Violations& violations) {
   v1::Campaign out;
   if (present.candidate_columns().empty()) {
-    violations.push_back({"name",
-                          "the campaign has one candidate, the base, and no columns that "
-                          "further candidates could have; create another one"});
+    violations.add("name",
+                   "the campaign has one candidate, the base, and no columns that "
+                   "further candidates could have; create another one");
     return out;
   }
   const bool is_of_lubricants = !present.candidate_lubricants().empty();
   if (is_of_lubricants == request.candidate_lubricants().empty()) {
-    violations.push_back(
-        {is_of_lubricants ? "candidate_lubricants" : "candidate_lubricants[0]",
-         is_of_lubricants
-             ? "not set; allowed: lubricants, which the candidates of this campaign are"
-             : "set; allowed: candidate_columns, which state the candidates of this campaign"});
+    violations.add(
+        is_of_lubricants ? "candidate_lubricants" : "candidate_lubricants[0]",
+        is_of_lubricants
+            ? "not set; allowed: lubricants, which the candidates of this campaign are"
+            : "set; allowed: candidate_columns, which state the candidates of this campaign");
   }
   if (is_of_lubricants && !request.candidate_columns().empty()) {
-    violations.push_back({"candidate_columns",
-                          "set; allowed: candidate_lubricants, as the candidates of this campaign "
-                          "are lubricants"});
+    violations.add("candidate_columns",
+                   "set; allowed: candidate_lubricants, as the candidates of this campaign "
+                   "are lubricants");
   }
   if (!is_of_lubricants && request.candidate_columns().empty()) {
-    violations.push_back({"candidate_columns", "not set; allowed: those of the campaign"});
+    violations.add("candidate_columns", "not set; allowed: those of the campaign");
   }
   if (!violations.empty()) return out;
   if (is_of_lubricants) {
@@ -232,15 +228,13 @@ v1::Campaign further_candidates(const v1::Campaign& campaign, const v1::Campaign
     for (int i = 0; i < out.candidate_lubricants_size(); ++i) {
       const std::string& name = out.candidate_lubricants(i);
       if (std::find(known.begin(), known.end(), name) == known.end()) continue;
-      violations.push_back({fmt::format("candidate_lubricants[{}]", i),
-                            name + " is a candidate already; allowed: others"});
+      violations.add(fmt::format("candidate_lubricants[{}]", i),
+                     name + " is a candidate already; allowed: others");
     }
     if (known.size() + out.candidate_lubricants_size() > kMaximumCandidateLubricants) {
-      violations.push_back({"candidate_lubricants",
-                            fmt::format("{} beside the {} that it has; allowed: at most {} in one "
-                                        "campaign",
-                                        out.candidate_lubricants_size(), known.size(),
-                                        kMaximumCandidateLubricants)});
+      violations.add("candidate_lubricants",
+                     "{} beside the {} that it has; allowed: at most {} in one campaign",
+                     out.candidate_lubricants_size(), known.size(), kMaximumCandidateLubricants);
     }
   }
   out.mutable_candidate_columns()->MergeFrom(request.candidate_columns());
@@ -274,35 +268,33 @@ void check_same_columns(const v1::Campaign& present, const v1::Campaign& further
   };
   for (const v1::CandidateColumn& each : present.candidate_columns()) {
     if (find_entry(further.candidate_columns(), each.path()) != nullptr) continue;
-    violations.push_back({"candidate_columns", "lacks the column \"" + each.path() +
-                                                   "\" of the campaign; allowed: all of them"});
+    violations.add("candidate_columns", "lacks the column \"" + each.path() +
+                                            "\" of the campaign; allowed: all of them");
   }
   for (int i = 0; i < further.candidate_columns_size(); ++i) {
     const std::string& path = further.candidate_columns(i).path();
     if (find_entry(present.candidate_columns(), path) != nullptr) continue;
     std::vector<std::string> known;
     for (const auto& each : present.candidate_columns()) known.push_back(each.path());
-    violations.push_back({fmt::format("candidate_columns[{}].path", i),
-                          fmt::format("\"{}\" is no column of the campaign{}", plain_excerpt(path),
-                                      meant_text(path, known))});
+    violations.add(fmt::format("candidate_columns[{}].path", i),
+                   "\"{}\" is no column of the campaign{}", plain_excerpt(path),
+                   meant_text(path, known));
   }
   for (const v1::CandidateAttribute& each : present.candidate_attributes()) {
     const auto* other = find_entry(further.candidate_attributes(), each.name());
     if (is_optional(each.name()) || (other != nullptr && kind(*other) == kind(each))) continue;
-    violations.push_back(
-        {"candidate_attributes", fmt::format("lacks \"{}\" with {}; allowed: all attributes of the "
-                                             "campaign",
-                                             each.name(), kind(each))});
+    violations.add("candidate_attributes",
+                   "lacks \"{}\" with {}; allowed: all attributes of the campaign", each.name(),
+                   kind(each));
   }
   for (int i = 0; i < further.candidate_attributes_size(); ++i) {
     const std::string& name = further.candidate_attributes(i).name();
     if (is_optional(name) || find_entry(present.candidate_attributes(), name) != nullptr) continue;
     std::vector<std::string> known;
     for (const auto& each : present.candidate_attributes()) known.push_back(each.name());
-    violations.push_back(
-        {fmt::format("candidate_attributes[{}].name", i),
-         fmt::format("\"{}\" is no attribute of the campaign{}", plain_excerpt(name),
-                     known.empty() ? ", which has none" : meant_text(name, known))});
+    violations.add(fmt::format("candidate_attributes[{}].name", i),
+                   "\"{}\" is no attribute of the campaign{}", plain_excerpt(name),
+                   known.empty() ? ", which has none" : meant_text(name, known));
   }
 }
 
@@ -359,7 +351,7 @@ std::optional<CampaignInputs> check_campaign(v1::Campaign request, const Resourc
   }();
   out.table.mutable_candidate_columns()->Swap(points.mutable_candidate_columns());
   for (Violation& each : found) {
-    violations.push_back({join_path(path, each.field), std::move(each.description)});
+    violations.add(join_path(path, each.field), std::move(each.description));
   }
   if (!is_read || !found.empty()) return std::nullopt;
   out.columns = campaign_columns(out.requested).size();
@@ -385,7 +377,7 @@ std::optional<CampaignInputs> read_campaign(v1::Campaign request, const Resource
   if (lacks_base) fields.insert(join_path(path, "lubricant"));
   for (Violation& each : found) {
     fields.insert(join_path(path, each.field));
-    violations.push_back({join_path(path, each.field), std::move(each.description)});
+    violations.add(join_path(path, each.field), std::move(each.description));
   }
   for (Violation& each : rest) {
     if (!fields.contains(each.field)) violations.push_back(std::move(each));
@@ -414,10 +406,10 @@ std::optional<AppendedCandidates> read_appended(const StoredCampaign& stored,
     return each.candidate_columns().empty() ? 0 : each.candidate_columns(0).values_size();
   };
   if (count(present) + count(further) > kMaximumCandidates) {
-    violations.push_back({"candidate_columns",
-                          fmt::format("{} candidates beside the {} that it has; allowed: at most "
-                                      "{} in one campaign; make another one",
-                                      count(further), count(present), kMaximumCandidates)});
+    violations.add("candidate_columns",
+                   "{} candidates beside the {} that it has; allowed: at most "
+                   "{} in one campaign; make another one",
+                   count(further), count(present), kMaximumCandidates);
   }
   v1::Campaign part = campaign;
   part.MergeFrom(further);

@@ -57,10 +57,10 @@ StoredCampaign stored_campaign(const SQLite::Statement& query) {
   out.processor_seconds = next().getDouble();
   out.cost_seconds = next().getDouble();
   out.stored_bytes = next().getInt64();
-  out.lubricant_revision = relative_name(next().getString());
-  out.gear_set_revision = own_revision(next().getString(), kGearSets);
-  out.surface_revision = own_revision(next().getString(), kSurfaces);
-  out.vehicle_revision = own_revision(next().getString(), kVehicles);
+  out.revisions.lubricant = relative_name(next().getString());
+  out.revisions.gear_set = own_revision(next().getString(), kGearSets);
+  out.revisions.surface = own_revision(next().getString(), kSurfaces);
+  out.revisions.vehicle = own_revision(next().getString(), kVehicles);
   return out;
 }
 
@@ -103,10 +103,9 @@ CampaignAdded insert_campaign(Connection& db, const NewCampaign& campaign, Micro
     }
   }
   std::vector<RevisionRow> revisions;
-  for (const std::string* revision : {&campaign.lubricant_revision, &campaign.gear_set_revision,
-                                      &campaign.surface_revision, &campaign.vehicle_revision}) {
+  for (const std::string* revision : campaign.revisions.all()) {
     revisions.push_back(revision_row(campaign.project,
-                                     revision->empty() ? campaign.lubricant_revision : *revision));
+                                     revision->empty() ? campaign.revisions.lubricant : *revision));
   }
   execute(db,
           "INSERT INTO campaigns (project, number, state, create_time, request_id, request_hash, "

@@ -3,7 +3,10 @@
 namespace tribodyn::server {
 
 /// States of a simulation as stored; the numbers are those of Simulation.State. kDeleted is that of
-/// an event only: a deleted simulation has no row.
+/// an event only: a deleted simulation has no row. A simulation is queued, runs and ends. It is
+/// queued again, as a further attempt, only when its server stops or crashes. A queued simulation
+/// may end without running: cancelled, after its deadline, or because equal inputs have a result by
+/// then. The trigger states_move_forward (schema_texts.h) enforces that.
 enum class StoredState {
   kDeleted = 0,
   kQueued = 1,
@@ -15,15 +18,6 @@ enum class StoredState {
 
 /// Returns true if the state is final.
 inline bool has_ended(StoredState state) { return state >= StoredState::kSucceeded; }
-
-/// Returns true if `to` may follow `from`. A simulation is queued, runs and ends. It is queued
-/// again, as a further attempt, only when its server stops or crashes. A queued simulation may end
-/// without running: cancelled, after its deadline, or because equal inputs have a result by then.
-/// The trigger states_move_forward in schema.cpp enforces the same rule.
-inline bool may_follow(StoredState from, StoredState to) {
-  if (from == StoredState::kQueued) return to != StoredState::kQueued;
-  return from == StoredState::kRunning && to != StoredState::kRunning;
-}
 
 /// Number of attempts that may end with a crash of the server before the simulation is considered
 /// its cause and fails.

@@ -21,18 +21,13 @@ ResourceLookup resource_lookup(Store& store, const std::string& project, const C
           }};
 }
 
-ResourceLookup accepted_lookup(Store& store, const StoredSimulation& simulation) {
-  return accepted_lookup(store, simulation.project,
-                         {simulation.lubricant_revision, simulation.gear_set_revision,
-                          simulation.surface_revision, simulation.vehicle_revision});
-}
-
 ResourceLookup accepted_lookup(Store& store, const std::string& project,
-                               const std::vector<std::string>& revisions) {
+                               const ResourceRevisions& revisions) {
   ResourceLookup out = resource_lookup(store, project);
   std::vector<RevisionName> accepted;
-  for (const std::string& each : revisions) {
-    const auto parsed = parse_revision_name(each, std::string_view(each).substr(0, each.find('/')));
+  for (const std::string* each : revisions.all()) {
+    const std::string_view collection = std::string_view(*each).substr(0, each->find('/'));
+    const auto parsed = parse_revision_name(*each, collection);
     if (parsed) accepted.push_back(*parsed);
   }
   out.find = [find = out.find, accepted](RevisionName name) {
@@ -46,19 +41,19 @@ ResourceLookup accepted_lookup(Store& store, const std::string& project,
   return out;
 }
 
-void set_accepted_names(const StoredSimulation& simulation, v1::Simulation& request) {
+void set_accepted_names(const ResourceRevisions& revisions, v1::Simulation& request) {
   const auto name_of = [](const std::string& revision, const char* collection) {
     const auto parsed = parse_revision_name(revision, collection);
     return parsed ? parsed->name : std::string();
   };
   if (request.gear_set().empty()) {
-    request.set_gear_set(name_of(simulation.gear_set_revision, kGearSets));
+    request.set_gear_set(name_of(revisions.gear_set, kGearSets));
   }
   if (request.surface().empty()) {
-    request.set_surface(name_of(simulation.surface_revision, kSurfaces));
+    request.set_surface(name_of(revisions.surface, kSurfaces));
   }
   if (request.vehicle().empty()) {
-    request.set_vehicle(name_of(simulation.vehicle_revision, kVehicles));
+    request.set_vehicle(name_of(revisions.vehicle, kVehicles));
   }
 }
 

@@ -14,16 +14,13 @@ namespace tribodyn::server {
 ResourceLookup resource_lookup(Store& store, const std::string& project,
                                const CallLimits& limits = {});
 
-/// Like resource_lookup(), but finds the four resources of `simulation` in the revisions with which
-/// it was accepted, even if a resource has been deleted since.
-ResourceLookup accepted_lookup(Store& store, const StoredSimulation& simulation);
-
-/// The same for resources of a project in stated revisions, e.g. "lubricants/paper-fluid-1@2".
+/// Like resource_lookup(), but finds the four resources of a simulation or campaign in the
+/// revisions with which it was accepted, even if a resource has been deleted since.
 ResourceLookup accepted_lookup(Store& store, const std::string& project,
-                               const std::vector<std::string>& revisions);
+                               const ResourceRevisions& revisions);
 
-/// Fills each empty resource name of `request` with the name of the revision that `simulation` was
-/// accepted with: an older version may have accepted it with another default.
-void set_accepted_names(const StoredSimulation& simulation, v1::Simulation& request);
+/// Fills each empty resource name of `request` with the name of the revision that the simulation
+/// was accepted with: an older version may have accepted it with another default.
+void set_accepted_names(const ResourceRevisions& revisions, v1::Simulation& request);
 
 }  // namespace tribodyn::server

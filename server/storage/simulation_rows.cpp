@@ -82,8 +82,7 @@ std::int64_t insert_row(Connection& db, const NewSimulation& simulation, std::in
                         Microseconds now) {
   std::optional<std::int64_t> ledger;
   if (!simulation.ledger.empty()) ledger = ledger_row(db, simulation.ledger);
-  const std::string* const names[] = {&simulation.lubricant_revision, &simulation.gear_set_revision,
-                                      &simulation.surface_revision, &simulation.vehicle_revision};
+  const auto names = simulation.revisions.all();
   std::vector<RevisionRow> revisions;
   for (const std::string* name : names) {
     revisions.push_back(revision_row(simulation.project, *name));
@@ -108,7 +107,7 @@ std::int64_t insert_row(Connection& db, const NewSimulation& simulation, std::in
   insert.executeStep();
   const std::int64_t id = insert.getColumn(0).getInt64();
   for (int i = 0; i < 4; ++i) {
-    if (!names[i]->empty() && insert.getColumn(1 + i).isNull()) {
+    if (!names[static_cast<std::size_t>(i)]->empty() && insert.getColumn(1 + i).isNull()) {
       throw SQLite::Exception("no such revision");
     }
   }
@@ -139,10 +138,7 @@ StoredSimulation inserted_simulation(const NewSimulation& simulation, std::int64
   out.principal = simulation.principal;
   out.scheduling_class = simulation.scheduling_class;
   out.input_hash = simulation.key.input_hash;
-  out.lubricant_revision = simulation.lubricant_revision;
-  out.gear_set_revision = simulation.gear_set_revision;
-  out.surface_revision = simulation.surface_revision;
-  out.vehicle_revision = simulation.vehicle_revision;
+  out.revisions = simulation.revisions;
   return out;
 }
 
@@ -276,10 +272,10 @@ StoredSimulation stored_simulation(const SQLite::Statement& query) {
   out.input_hash = query.getColumn(12).getString();
   out.error_reason = query.getColumn(13).getString();
   out.error_message = query.getColumn(14).getString();
-  out.lubricant_revision = relative_name(query.getColumn(15).getString());
-  out.gear_set_revision = relative_name(query.getColumn(16).getString());
-  out.surface_revision = relative_name(query.getColumn(17).getString());
-  out.vehicle_revision = relative_name(query.getColumn(18).getString());
+  out.revisions.lubricant = relative_name(query.getColumn(15).getString());
+  out.revisions.gear_set = relative_name(query.getColumn(16).getString());
+  out.revisions.surface = relative_name(query.getColumn(17).getString());
+  out.revisions.vehicle = relative_name(query.getColumn(18).getString());
   out.request_id = query.getColumn(19).getString();
   out.is_pinned = query.getColumn(20).getInt() != 0;
   out.client = query.getColumn(21).getString();

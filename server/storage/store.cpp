@@ -168,7 +168,7 @@ Store::~Store() {
 }
 
 void Store::open_schema() {
-  write({}, [this](Connection& db) {
+  run_write({}, [this](Connection& db) {
     require_servable(db, path_);
     const int version = db.execAndGet("PRAGMA user_version").getInt();
     if (sqlite3_db_readonly(db.getHandle(), "main") == 1) {
@@ -193,13 +193,12 @@ void Store::open_schema() {
     SQLite::Statement projects(db, "SELECT name FROM projects");
     const std::lock_guard lock(projects_mutex_);
     while (projects.executeStep()) projects_.insert(projects.getColumn(0).getString());
-    return true;
   });
 }
 
 void Store::add_project(const std::string& project, const std::vector<NewResource>& resources,
                         Microseconds now) {
-  write({}, [&](Connection& db) {
+  run_write({}, [&](Connection& db) {
     SQLite::Transaction transaction(db);
     execute(db, "INSERT INTO projects (name) VALUES (?) ON CONFLICT DO NOTHING", project);
     for (const NewResource& each : resources) {
@@ -207,7 +206,6 @@ void Store::add_project(const std::string& project, const std::vector<NewResourc
       if (!is_taken(db, name)) insert_resource(db, {name, each.body}, now);
     }
     transaction.commit();
-    return true;
   });
   const std::lock_guard lock(projects_mutex_);
   projects_.insert(project);

@@ -54,11 +54,8 @@ class Store {
   /// not migrate the database.
   const std::optional<std::filesystem::path>& migration_backup() const { return migration_backup_; }
 
-  /// Adds the resources whose names do not exist, in one transaction. Existing ones, deleted or
-  /// not, do not change.
-  void add_resources(const std::vector<NewResource>& resources, Microseconds now);
-  /// Adds a project, unless it exists, and those of the resources that it does not have, in one
-  /// transaction. `resources` have relative names.
+  /// Adds a project, unless it exists, and those of the resources that it does not have, deleted or
+  /// not, in one transaction. `resources` have relative names.
   void add_project(const std::string& project, const std::vector<NewResource>& resources,
                    Microseconds now);
   /// Reads no row: the store remembers the names of all projects.
@@ -278,9 +275,6 @@ class Store {
   /// if the column no longer exists.
   bool read_history(std::int64_t column, int level, std::int64_t start, std::span<double> values,
                     const CallLimits& limits = {});
-  /// Returns rows [start, start + count) of one column.
-  std::vector<double> history_rows(std::int64_t id, const std::string& column, std::int64_t start,
-                                   std::int64_t count);
 
  private:
   void open_schema();

@@ -159,10 +159,7 @@ bool Store::remove_campaign(std::int64_t id, const CallLimits& limits) {
 
 void Store::read_campaign(std::int64_t id, int column, std::int64_t start, std::span<double> values,
                           const CallLimits& limits) {
-  read(limits, [&](Connection& db) {
-    query_campaign_column(db, id, column, start, values);
-    return true;
-  });
+  run_read(limits, [&](Connection& db) { query_campaign_column(db, id, column, start, values); });
 }
 
 }  // namespace tribodyn::server

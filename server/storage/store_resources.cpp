@@ -10,17 +10,6 @@
 
 namespace tribodyn::server {
 
-void Store::add_resources(const std::vector<NewResource>& resources, Microseconds now) {
-  write({}, [&](Connection& db) {
-    SQLite::Transaction transaction(db);
-    for (const NewResource& each : resources) {
-      if (!is_taken(db, each.name)) insert_resource(db, each, now);
-    }
-    transaction.commit();
-    return true;
-  });
-}
-
 std::optional<StoredResource> Store::resource(const std::string& name, const CallLimits& limits) {
   return read(limits, [&](Connection& db) {
     Prepared query(db,
@@ -133,11 +122,10 @@ Dependents Store::dependents_of(const StoredResource& present, const CallLimits&
 }
 
 std::vector<std::filesystem::path> Store::erase_removed() {
-  write({}, [this](Connection& db) {
+  run_write({}, [this](Connection& db) {
     server::erase_removed(db);
     remove_migration_backups(path_);
     has_unerased_purge_ = false;  // under the writer's lock: no purge comes between
-    return true;
   });
   return former_databases(path_);
 }

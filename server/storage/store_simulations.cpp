@@ -1,8 +1,6 @@
 // Store: simulations, the changes of their states, their events, results and histories.
 #include <SQLiteCpp/Transaction.h>
 
-#include <algorithm>
-
 #include "server/storage/checksum.h"
 #include "server/storage/event_rows.h"
 #include "server/storage/resource_rows.h"
@@ -223,18 +221,6 @@ bool Store::read_history(std::int64_t column, int level, std::int64_t start,
                          std::span<double> values, const CallLimits& limits) {
   return read(limits,
               [&](Connection& db) { return query_history(db, column, level, start, values); });
-}
-
-std::vector<double> Store::history_rows(std::int64_t id, const std::string& column,
-                                        std::int64_t start, std::int64_t count) {
-  const HistoryShape shape = history_shape(id);
-  const auto found = std::find(shape.names.begin(), shape.names.end(), column);
-  std::vector<double> values(static_cast<std::size_t>(count));
-  if (found == shape.names.end() ||
-      !read_history(shape.columns[found - shape.names.begin()], 0, start, values)) {
-    throw StoreError(StoreError::Kind::kFailed, "the history has no such column");
-  }
-  return values;
 }
 
 }  // namespace tribodyn::server

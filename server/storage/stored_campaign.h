@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/contract/resource_names.h"
+#include "server/storage/stored_resource.h"
 #include "server/storage/times.h"
 
 namespace tribodyn::server {
@@ -48,12 +49,7 @@ struct NewCampaign {
   double cost_seconds = 0;  ///< estimate, in seconds of one processor
   CampaignBudget budget;
   CampaignLabels labels;
-  // Revisions of its resources, as relative names; each exists in the project. Those but the first
-  // are empty if it has no such resource.
-  std::string lubricant_revision;
-  std::string gear_set_revision;
-  std::string surface_revision;
-  std::string vehicle_revision;
+  ResourceRevisions revisions;  ///< each exists in the project or, but the first, is empty
   std::vector<std::string> candidate_lubricants;  ///< candidates that are lubricants, likewise
 };
 
@@ -96,11 +92,7 @@ struct StoredCampaign {
   double processor_seconds = 0;
   double cost_seconds = 0;  ///< estimate of all its points, in seconds of one processor
   std::int64_t stored_bytes = 0;
-  // Revisions of its resources, as relative names; empty: it has no such resource.
-  std::string lubricant_revision;
-  std::string gear_set_revision;
-  std::string surface_revision;
-  std::string vehicle_revision;
+  ResourceRevisions revisions;
 
   std::int64_t points() const { return std::int64_t{candidates} * conditions; }
   /// Returns the estimate of the points that are not done.

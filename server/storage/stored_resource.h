@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -38,6 +39,19 @@ struct StoredResource {
   std::optional<Microseconds> delete_time;
   std::string content_hash;
   std::string body;  ///< serialised message
+};
+
+/// The revisions of the resources of a simulation or of a campaign, as relative names, e.g.
+/// "lubricants/paper-fluid-1@2"; empty without such a resource, and if it is unknown.
+struct ResourceRevisions {
+  std::string lubricant = {};
+  std::string gear_set = {};
+  std::string surface = {};
+  std::string vehicle = {};
+
+  std::array<const std::string*, 4> all() const {
+    return {&lubricant, &gear_set, &surface, &vehicle};
+  }
 };
 
 /// A new resource, or the next revision of one.

@@ -36,12 +36,7 @@ struct NewSimulation {
   int scheduling_class = 0;    ///< SchedulingClass
   double cost_seconds = 0;     ///< estimate, in seconds of one processor
   std::vector<std::pair<std::string, std::string>> labels = {};
-  // Revisions of its resources, as relative names, e.g. "lubricants/paper-fluid-1@2"; each exists
-  // in the project or is empty.
-  std::string lubricant_revision = {};
-  std::string gear_set_revision = {};
-  std::string surface_revision = {};
-  std::string vehicle_revision = {};
+  ResourceRevisions revisions = {};  ///< each exists in the project or is empty
 };
 
 struct StoredSimulation {
@@ -68,11 +63,7 @@ struct StoredSimulation {
   std::string input_hash;
   std::string error_reason;
   std::string error_message;
-  // Revisions of its resources, as relative names; empty if unknown.
-  std::string lubricant_revision;
-  std::string gear_set_revision;
-  std::string surface_revision;
-  std::string vehicle_revision;
+  ResourceRevisions revisions;
 };
 
 /// Returns the full name of a stored simulation.

@@ -37,7 +37,7 @@ class Library {
       label->set_value(fmt::format("p{}", i % 10));
       all.push_back({lubricant.name(), lubricant.SerializeAsString()});
     }
-    bench_.store().add_resources(all, system_time());
+    bench_.store().add_project("default", all, system_time());
   }
 
   void list(const std::string& filter, const std::string& order) {

@@ -46,7 +46,7 @@ constexpr int kMostCalls = 100;  // far more than a backup or a restore makes
 void fill(const std::string& database, int simulations) {
   const int code = run_in_child([&] {
     Store store(database);
-    store.add_resources(server::seed_resources(), 1);
+    store.add_project("default", server::seed_resources(), 1);
     const server::ResultKey key{std::string(64, 'a'), "model", "platform"};
     for (int i = 0; i < simulations; ++i) store.add_simulation({.request = "", .key = key}, 2);
     _exit(0);
@@ -272,12 +272,12 @@ TEST_F(MaintenanceOnAFaultyDisk, APurgeRemovesAResourceWithItsSimulationsOrNothi
     tribodyn::v1::Lubricant lubricant;
     lubricant.set_name("lubricants/secret");
     lubricant.set_display_name(marker);
-    store.add_resources({{"lubricants/secret", lubricant.SerializeAsString()}}, 1);
+    store.add_project("default", {{"lubricants/secret", lubricant.SerializeAsString()}}, 1);
     const server::ResultKey key{std::string(64, 'a'), "model", "platform"};
     const auto id =
         store
             .add_simulation(
-                {.request = "", .key = key, .lubricant_revision = "lubricants/secret@1"}, 2)
+                {.request = "", .key = key, .revisions = {.lubricant = "lubricants/secret@1"}}, 2)
             .id;
     store.mark_running(id, 3, key);
     tribodyn::v1::SimulationResult result;

@@ -184,8 +184,8 @@ class Session {
       campaign.request_hash = campaign.input_hash = std::string(64, 'c');
       campaign.candidates = 3;
       campaign.conditions = kTileRows;
-      for (std::string* each : {&campaign.lubricant_revision, &campaign.gear_set_revision,
-                                &campaign.surface_revision, &campaign.vehicle_revision}) {
+      for (std::string* each : {&campaign.revisions.lubricant, &campaign.revisions.gear_set,
+                                &campaign.revisions.surface, &campaign.revisions.vehicle}) {
         *each = "lubricants/x@1";
       }
       told_.campaign = store_->add_campaign(campaign, 2).stored.id;
@@ -238,7 +238,7 @@ bool is_kept(Store& store, std::int64_t id, const StoredEvent& event) {
 
 bool is_kept(Store& store, std::int64_t id, char input) {
   return store.simulation(id)->state == StoredState::kSucceeded &&
-         store.result(id) == body(input) && store.history_rows(id, "a", 0, 700) == rows(input);
+         store.result(id) == body(input) && history_rows(store, id, "a", 0, 700) == rows(input);
 }
 
 /// Returns the acknowledged changes that are missing, and the problems of the database.

@@ -26,7 +26,7 @@ class FuzzedServer {
         jobs_(store_, {}),
         application_{store_, jobs_} {
     static const std::vector<NewResource> kSeeds = seed_resources();
-    store_.add_resources(kSeeds, system_time());
+    store_.add_project("default", kSeeds, system_time());
   }
   ~FuzzedServer() {
     jobs_.stop();

@@ -196,7 +196,7 @@ TEST_F(CallDispatcherTest, AStatementOfAClientThatCancelsIsInterrupted) {
   for (int i = 0; i < 20'000; ++i) {
     many.push_back({"lubricants/m" + std::to_string(i), std::string(200, 'x')});
   }
-  bench_.store().add_resources(many, 1);
+  bench_.store().add_project("default", many, 1);
   ResourceQuery query;
   query.collection = "lubricants";
   query.limit = 10;

@@ -593,7 +593,7 @@ TEST_F(CandidatesTest, AFilterSeesTheRowsThatWereThereWhenItWasOpened) {
   const std::string name = create(limited);
   ASSERT_TRUE(reaches(name, v1::Campaign::PAUSED));
   ASSERT_TRUE(eventually([&] {
-    const Occupancy parts = bench_.jobs().occupancy();
+    const Occupancy parts = bench_.jobs().scheduler().occupancy();
     return parts.running + parts.waiting == 0;
   }));
   const int done = get(name).points_done();

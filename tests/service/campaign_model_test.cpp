@@ -150,8 +150,8 @@ class CampaignSchedule {
     if (draw(3) == 0) {
       added.budget = {.processor_seconds = draw(2) * 0.75, .points = draw(2) * (1 + draw(8))};
     }
-    for (std::string* each : {&added.lubricant_revision, &added.gear_set_revision,
-                              &added.surface_revision, &added.vehicle_revision}) {
+    for (std::string* each : {&added.revisions.lubricant, &added.revisions.gear_set,
+                              &added.revisions.surface, &added.revisions.vehicle}) {
       *each = kRevision;
     }
     log_ += fmt::format("submit {} {}\n", added.request_id, added.request_hash.back());

@@ -572,7 +572,7 @@ TEST_F(CampaignTest, ACampaignThatKillsTheServerIsPaused) {
   const std::string name = create(limited);
   ASSERT_TRUE(reaches(name, v1::Campaign::PAUSED));
   ASSERT_TRUE(eventually([&] {
-    const Occupancy parts = bench_.jobs().occupancy();
+    const Occupancy parts = bench_.jobs().scheduler().occupancy();
     return parts.running + parts.waiting == 0;
   }));
   const std::int64_t id = bench_.store().numbered_campaign("default", 1)->id;
@@ -591,7 +591,7 @@ TEST_F(CampaignTest, RowsAtWhichAProcessIsLostAreHalvedDownToOneCandidate) {
   create(limited);
   ASSERT_TRUE(reaches("campaigns/1", v1::Campaign::PAUSED));
   ASSERT_TRUE(eventually([&] {
-    const Occupancy parts = bench_.jobs().occupancy();
+    const Occupancy parts = bench_.jobs().scheduler().occupancy();
     return parts.running + parts.waiting == 0;
   }));
   Store& store = bench_.store();
@@ -652,7 +652,7 @@ TEST_F(CampaignTest, TheStoreTakesEachRowOnce) {
   create(limited);
   ASSERT_TRUE(reaches("campaigns/1", v1::Campaign::PAUSED));
   ASSERT_TRUE(eventually([&] {
-    const Occupancy parts = bench_.jobs().occupancy();
+    const Occupancy parts = bench_.jobs().scheduler().occupancy();
     return parts.running + parts.waiting == 0;
   }));
   Store& store = bench_.store();

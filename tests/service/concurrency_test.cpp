@@ -183,7 +183,7 @@ TEST(Concurrency, DrainingWhileFedWatchedAndCancelled) {
   std::atomic<int> accepted = 0;
   std::thread drainer([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    bench.jobs().drain(std::chrono::milliseconds(50), [] { return false; });
+    bench.jobs().scheduler().drain(std::chrono::milliseconds(50), [] { return false; });
     bench.jobs().stop();
   });
   on_threads(4, [&](int thread) {

@@ -91,7 +91,7 @@ TEST_F(DeleteTest, AnUnfinishedSimulationIsDeletedOnlyTogetherWithItsCancellatio
   EXPECT_EQ(remove(of(name, true)).code(), google::rpc::OK);
   EXPECT_FALSE(exists(name));
   *release_ = true;
-  EXPECT_TRUE(eventually([&] { return bench_.jobs().occupancy().running == 0; }));
+  EXPECT_TRUE(eventually([&] { return bench_.jobs().scheduler().occupancy().running == 0; }));
   EXPECT_FALSE(exists(name)) << "its thread adds nothing";
   EXPECT_EQ(bench_.jobs().progress(*simulation_id(name)), std::nullopt)
       << "no progress of it is kept";

@@ -134,7 +134,7 @@ class EventStreamTest : public testing::Test {
     return eventually([&] {
       return bench_.jobs()
                  .metrics()
-                 .text(bench_.jobs().occupancy())
+                 .text(bench_.jobs().scheduler().occupancy())
                  .find("tribodyn_calls_total{code=\"" + code +
                        "\",method=\"tribodyn.v1.SimulationService." + method + "\"} " +
                        std::to_string(count) + "\n") != std::string::npos;

@@ -334,7 +334,7 @@ TEST_F(HttpServerTest, ACallWhoseClientHangsUpIsCancelled) {
   EXPECT_TRUE(eventually([&] {
     return bench_.jobs()
                .metrics()
-               .text(bench_.jobs().occupancy())
+               .text(bench_.jobs().scheduler().occupancy())
                .find(
                    "tribodyn_calls_total{code=\"CANCELLED\",method=\"tribodyn.v1.LubricantService."
                    "BatchCreateLubricants\"} 1\n") != std::string::npos;

@@ -285,7 +285,7 @@ TEST(SimulationJobs, ARunningSimulationStopsWhenCancelled) {
   Bench bench(patient_studies(release), 1);
   const std::string name = bench.create(point_simulation());
   ASSERT_TRUE(bench.reaches(name, v1::Simulation::RUNNING));
-  bench.jobs().cancel(*simulation_id(name));
+  bench.jobs().scheduler().cancel(*simulation_id(name));
   EXPECT_EQ(bench.get(name).state(), v1::Simulation::CANCELLED) << "at once";
   const std::string next = bench.create(curve_simulation());
   EXPECT_TRUE(bench.reaches(next, v1::Simulation::RUNNING)) << "the only thread is free again";
@@ -300,7 +300,7 @@ TEST(SimulationJobs, AWaitingSimulationIsCancelledWithoutRunning) {
   Bench bench(patient_studies(release), 1);
   const std::string first = bench.create(point_simulation());
   const std::string second = bench.create(point_simulation());
-  bench.jobs().cancel(*simulation_id(second));
+  bench.jobs().scheduler().cancel(*simulation_id(second));
   *release = true;
   EXPECT_TRUE(bench.reaches(first, v1::Simulation::SUCCEEDED));
   EXPECT_EQ(bench.get(second).state(), v1::Simulation::CANCELLED);
@@ -389,7 +389,9 @@ TEST(SimulationJobs, AFullQueueRefusesSimulations) {
   bench.create(point_simulation());
   bench.create(point_simulation());
   EXPECT_EQ(bench.jobs()
-                .submit({.request = "request", .key = {std::string(64, 'a'), "model", "platform"}})
+                .scheduler()
+                .admit({.request = "request", .key = {std::string(64, 'a'), "model", "platform"}},
+                       nullptr)
                 .added.kind,
             AddOutcome::Kind::kNoPlace);
   *release = true;

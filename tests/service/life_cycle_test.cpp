@@ -184,8 +184,8 @@ TEST_F(LifeCycle, EqualInputsAreServedFromTheCacheBitForBit) {
             computed.result().points(0).SerializeAsString());
   EXPECT_EQ(served.input_hash(), computed.input_hash());
   EXPECT_EQ(served.result().input_hash(), served.input_hash());
-  EXPECT_EQ(bench.store().history_rows(*simulation_id(served.name()), "mesh_force_newtons", 3, 2),
-            bench.store().history_rows(*simulation_id(first), "mesh_force_newtons", 3, 2));
+  EXPECT_EQ(history_rows(bench.store(), *simulation_id(served.name()), "mesh_force_newtons", 3, 2),
+            history_rows(bench.store(), *simulation_id(first), "mesh_force_newtons", 3, 2));
   EXPECT_THAT(states(bench, served.name()), ElementsAre(State::QUEUED, State::SUCCEEDED));
 }
 
@@ -193,7 +193,7 @@ TEST_F(LifeCycle, ACachedResultHasTheAssumptionsOfItsOwnResources) {
   Bench bench;
   v1::Lubricant copy = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   copy.set_name("lubricants/copy");
-  bench.store().add_resources({{copy.name(), copy.SerializeAsString()}}, 1);
+  bench.store().add_project("default", {{copy.name(), copy.SerializeAsString()}}, 1);
   finished(bench, request_of(point_simulation()));
   auto of_copy = point_simulation();
   of_copy.set_lubricant("lubricants/copy");
@@ -306,7 +306,7 @@ TEST_F(LifeCycle, ALargeImportDoesNotEvictResults) {
   v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   lubricant.set_name("lubricants/large");
   lubricant.set_description(std::string(1'000'000, 'x'));
-  bench.store().add_resources({{lubricant.name(), lubricant.SerializeAsString()}}, 1);
+  bench.store().add_project("default", {{lubricant.name(), lubricant.SerializeAsString()}}, 1);
   const auto clock = [later = system_time() + 120'000'000] { return later; };
   Janitor(bench.store(), {.disk_budget_bytes = 500'000}, clock).clean();
   EXPECT_TRUE(bench.get(name).has_result());

@@ -31,13 +31,13 @@ class MaintenanceTest : public testing::Test {
   std::string path() const { return folder_.file("tribodyn.db"); }
   void make() const {
     Store store(path());
-    store.add_resources(seed_resources(), 1);
+    store.add_project("default", seed_resources(), 1);
     const ResultKey key{std::string(64, 'a'), "model", "platform"};
     const auto id = store
                         .add_simulation({.request = point_simulation().SerializeAsString(),
                                          .key = key,
                                          .ledger = "assumptions",
-                                         .lubricant_revision = "lubricants/paper-fluid-1@1"},
+                                         .revisions = {.lubricant = "lubricants/paper-fluid-1@1"}},
                                         5)
                         .id;
     store.mark_running(id, 6, key);
@@ -111,9 +111,9 @@ TEST_P(OldSchema, IsMigratedAndLosesNothing) {
   }
   EXPECT_TRUE(store.has_project("default"));
   EXPECT_FALSE(store.has_project("acme"));
-  EXPECT_EQ(store.simulation(1)->lubricant_revision, "lubricants/2@1");
-  EXPECT_EQ(store.simulation(1)->gear_set_revision, "gearSets/B@1");
-  EXPECT_EQ(store.simulation(2)->gear_set_revision, "gearSets/A@1")
+  EXPECT_EQ(store.simulation(1)->revisions.lubricant, "lubricants/2@1");
+  EXPECT_EQ(store.simulation(1)->revisions.gear_set, "gearSets/B@1");
+  EXPECT_EQ(store.simulation(2)->revisions.gear_set, "gearSets/A@1")
       << "what the request left out meant the default";
   v1::Simulation request;
   ASSERT_TRUE(request.ParseFromString(store.simulation(2)->request));
@@ -197,7 +197,7 @@ TEST_F(MaintenanceTest, ABackupOfARunningServerIsCompleteAndRestored) {
     Store running(path());
     v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/paper-fluid-1");
     lubricant.set_name("lubricants/new");
-    running.add_resources({{lubricant.name(), lubricant.SerializeAsString()}}, 9);
+    running.add_project("default", {{lubricant.name(), lubricant.SerializeAsString()}}, 9);
     backup_database(path(), folder_.file("copy"));
     EXPECT_THROW(restore_database(folder_.file("copy"), path()), StoreError) << "it runs";
     EXPECT_THROW(backup_database(path(), folder_.file("copy")), StoreError) << "it exists";
@@ -207,18 +207,18 @@ TEST_F(MaintenanceTest, ABackupOfARunningServerIsCompleteAndRestored) {
   EXPECT_TRUE(std::filesystem::exists(path() + ".replaced"));
   Store store(path());
   EXPECT_TRUE(store.resource("lubricants/new"));
-  EXPECT_EQ(store.history_rows(1, "a", 0, 2), (std::vector<double>{1, 2}));
+  EXPECT_EQ(history_rows(store, 1, "a", 0, 2), (std::vector<double>{1, 2}));
 }
 
 TEST_F(MaintenanceTest, ABackupEndsWhileAnotherConnectionCommitsAllTheTime) {
   const TemporaryFolder memory(TemporaryFolder::Kind::kMemory);
   Store store(memory.file("db"));
-  store.add_resources(seed_resources(), 1);
+  store.add_project("default", seed_resources(), 1);
   v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   lubricant.set_description(std::string(1'000'000, 'x'));
   for (int i = 0; i < 12; ++i) {  // thousands of pages
     lubricant.set_name("lubricants/large-" + std::to_string(i));
-    store.add_resources({{lubricant.name(), lubricant.SerializeAsString()}}, 2);
+    store.add_project("default", {{lubricant.name(), lubricant.SerializeAsString()}}, 2);
   }
   const ResultKey key{std::string(64, 'a'), "model", "platform"};
   const std::int64_t id = store.add_simulation({.request = "", .key = key}, 3).id;

@@ -46,12 +46,13 @@ class Removals : public testing::Test {
     assumptions.add_assumptions()->set_value("1.2345678901234567e-8 /Pa");
     assumptions.mutable_assumptions(0)->set_source(kSecretName);
     return store_
-        .add_simulation({.request = "request",
-                         .key = key(input),
-                         .ledger = assumptions.SerializeAsString(),
-                         .labels = {{"series", kSecretName}},
-                         .lubricant_revision = "lubricants/secret@" + std::to_string(revision)},
-                        10)
+        .add_simulation(
+            {.request = "request",
+             .key = key(input),
+             .ledger = assumptions.SerializeAsString(),
+             .labels = {{"series", kSecretName}},
+             .revisions = {.lubricant = "lubricants/secret@" + std::to_string(revision)}},
+            10)
         .id;
   }
 
@@ -84,7 +85,7 @@ TEST_F(Removals, APurgedFormulationIsInNoFile) {
   finish('b', 3);
   const auto old = finish('c', 2);
   ASSERT_EQ(store_.remove_simulation(old), Store::Removal::kDone);
-  store_.add_resources({{"lubricants/other", "other"}}, 20);
+  store_.add_project("default", {{"lubricants/other", "other"}}, 20);
   ASSERT_FALSE(files_with(kSecretName).empty());
   ASSERT_FALSE(files_with(bytes_of(kSecretNumber)).empty());
 
@@ -155,7 +156,7 @@ TEST_F(Removals, AResultIsKeptWhileAnotherSimulationUsesIt) {
   ASSERT_EQ(store_.simulation(second)->state, StoredState::kSucceeded);
   EXPECT_EQ(store_.remove_simulation(first), Store::Removal::kDone);
   EXPECT_TRUE(store_.result(second));
-  EXPECT_EQ(store_.history_rows(second, "column", 0, 1).front(), kSecretNumber);
+  EXPECT_EQ(history_rows(store_, second, "column", 0, 1).front(), kSecretNumber);
   EXPECT_EQ(store_.remove_simulation(first), Store::Removal::kAbsent);
 }
 

@@ -567,7 +567,7 @@ TEST_F(ResourcesTest, AnExportOfABodyOfAnEarlierVersionIsImportedUnchanged) {
   for (int i = entries.size() - 1; i >= 0; --i) {
     if (entries.Get(i).field().ends_with("by_torque")) entries.DeleteSubrange(i, 1);
   }
-  bench_.store().add_resources({{old.name(), old.SerializeAsString()}}, 0);
+  bench_.store().add_project("default", {{old.name(), old.SerializeAsString()}}, 0);
   v1::GetGearSetRequest request;
   request.set_name(old.name());
   v1::GearSet first = get_gear_set(app_, request).message();

@@ -294,7 +294,7 @@ TEST(ClaimPolicy, WhatOutrunsItsEstimateOnALentThreadGoesBackAsABulkJob) {
   EXPECT_EQ(policy.use(2, 0.11), Verdict::kGiveBack);
   EXPECT_EQ(policy.use(2, 0.12), Verdict::kGiveBack);
   policy.computed(2, 0.12);
-  policy.requeue(2, false);
+  policy.requeue(2);
   EXPECT_FALSE(policy.is_urgent());
   EXPECT_EQ(begun_beside(policy, 1), 0);
   policy.computed(1, 10);
@@ -349,7 +349,7 @@ class SchedulerTest : public testing::Test {
     scheduler_.reset();
     store_.reset();
     store_ = std::make_unique<Store>(folder_.file("tribodyn.db"));
-    store_->add_resources(seed_resources(), 1);
+    store_->add_project("default", seed_resources(), 1);
     Scheduler::Options options;
     options.clock = [this] { return wall_; };
     options.steady = [this] { return steady_; };
@@ -377,16 +377,15 @@ class SchedulerTest : public testing::Test {
     simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(speed);
     Violations violations;
     auto inputs = read_simulation(simulation, seed_lookup(), "simulation", violations);
-    const NewSimulation row{.request = inputs->requested.SerializeAsString(),
-                            .key = result_key(*inputs),
-                            .is_forced = force,
-                            .deadline_time = deadline,
-                            .principal = principal,
-                            .cost_seconds = 0.001,
-                            .lubricant_revision = inputs->effective.lubricant_revision(),
-                            .gear_set_revision = inputs->effective.gear_set_revision(),
-                            .surface_revision = inputs->effective.surface_revision(),
-                            .vehicle_revision = inputs->effective.vehicle_revision()};
+    const NewSimulation row{
+        .request = inputs->requested.SerializeAsString(),
+        .key = result_key(*inputs),
+        .is_forced = force,
+        .deadline_time = deadline,
+        .principal = principal,
+        .cost_seconds = 0.001,
+        .revisions = {inputs->effective.lubricant_revision(), inputs->effective.gear_set_revision(),
+                      inputs->effective.surface_revision(), inputs->effective.vehicle_revision()}};
     return scheduler_->admit(row, std::make_shared<const SimulationInputs>(std::move(*inputs)))
         .added.id;
   }

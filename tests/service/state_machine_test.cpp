@@ -24,6 +24,12 @@ constexpr int kSteps = 12;
 constexpr int kInputs = 2;
 constexpr int kRequestIds = 2;
 
+/// Returns true if `to` may follow `from`, as life_cycle.h states it.
+bool may_follow(StoredState from, StoredState to) {
+  if (from == StoredState::kQueued) return to != StoredState::kQueued;
+  return from == StoredState::kRunning && to != StoredState::kRunning;
+}
+
 /// The expected state of a simulation.
 struct Expected {
   std::string hash;
@@ -263,7 +269,7 @@ class Schedule {
       EXPECT_FALSE(store_.next_event(id, count)) << log_;
       if (job.state == StoredState::kSucceeded) {
         EXPECT_EQ(store_.result(id), results_.at(job.hash)) << log_;
-        EXPECT_EQ(store_.history_rows(id, "a", 1, 1), std::vector<double>{2}) << log_;
+        EXPECT_EQ(history_rows(store_, id, "a", 1, 1), std::vector<double>{2}) << log_;
       }
     }
   }

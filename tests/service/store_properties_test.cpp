@@ -344,7 +344,7 @@ void simulate(Application& app) {
 RC_GTEST_PROP(AnySequenceOfOperations, KeepsTheStoreConsistentAndItsExportExact, ()) {
   Place place;
   Revisions revisions;
-  place.store.add_resources(seed_resources(), system_time());
+  place.store.add_project("default", seed_resources(), system_time());
   for (const NewResource& seed : seed_resources()) revisions[seed.name] = 1;
   for (int i = *rc::gen::inRange(1, 25); i > 0; --i) {
     switch (*rc::gen::inRange(0, 9)) {

@@ -37,9 +37,10 @@ class StoreTest : public testing::Test {
 
 TEST_F(StoreTest, SeedsAreAddedOnceAndNeverOverwritten) {
   Store store(path());
-  store.add_resources({{"lubricants/paper-fluid-1", "first"}}, 1);
-  store.add_resources(
-      {{"lubricants/paper-fluid-1", "second"}, {"lubricants/paper-fluid-2", "other"}}, 2);
+  store.add_project("default", {{"lubricants/paper-fluid-1", "first"}}, 1);
+  store.add_project("default",
+                    {{"lubricants/paper-fluid-1", "second"}, {"lubricants/paper-fluid-2", "other"}},
+                    2);
   EXPECT_EQ(store.resource("lubricants/paper-fluid-1")->body, "first");
   EXPECT_EQ(store.resource("lubricants/paper-fluid-2")->body, "other");
   EXPECT_EQ(store.resource("lubricants/paper-fluid-3"), std::nullopt);
@@ -56,7 +57,8 @@ ResourceQuery all_of_b(int limit, std::size_t byte_limit, const std::string& aft
 
 TEST_F(StoreTest, ResourcesArePagedByNumberAndBytesWithinTheirCollection) {
   Store store(path());
-  store.add_resources(
+  store.add_project(
+      "default",
       {{"a/1", "x"}, {"b/1", "x"}, {"b/2", std::string(100, 'x')}, {"b/3", "x"}, {"c/1", "x"}}, 1);
   auto page = store.resources(all_of_b(2, 1000));
   ASSERT_EQ(page.rows.size(), 2U);
@@ -123,7 +125,7 @@ TEST_F(StoreTest, RevisionTimesDoNotGoBackWhenTheClockDoes) {
 
 TEST_F(StoreTest, ADeletedResourceIsNotListedAndIsUndeletedUnchanged) {
   Store store(path());
-  store.add_resources({{"b/1", "body"}}, 1);
+  store.add_project("default", {{"b/1", "body"}}, 1);
   ASSERT_TRUE(store.delete_resource(*store.resource("b/1"), 5));
   EXPECT_EQ(store.resource("b/1")->delete_time, 5);
   EXPECT_TRUE(store.resources(all_of_b(10, 1000)).rows.empty());
@@ -152,7 +154,7 @@ TEST_F(StoreTest, ASimulationGoesThroughItsStatesAndKeepsItsResult) {
   EXPECT_EQ(store.result(id), "result");
   EXPECT_EQ(store.history_shape(id).names, (std::vector<std::string>{"a", "b"}));
   EXPECT_EQ(store.history_shape(id).rows, 3);
-  EXPECT_EQ(store.history_rows(id, "b", 1, 2), (std::vector<double>{5, 6}));
+  EXPECT_EQ(history_rows(store, id, "b", 1, 2), (std::vector<double>{5, 6}));
   EXPECT_FALSE(store.mark_cancelled(id, 40)) << "an end is final";
   EXPECT_FALSE(store.mark_failed(id, 40, "X", "y"));
 }
@@ -236,7 +238,7 @@ TEST_F(StoreTest, TheSchemaRefusesInvalidRows) {
   raw.exec("PRAGMA foreign_keys = ON");
   const auto id = store.add_simulation({.request = "r", .key = kKey}, 1).id;
   EXPECT_THROW(raw.exec("INSERT INTO history VALUES (1, 77, 0, 'a', x'00')"), SQLite::Exception);
-  store.add_resources({{"a/1", "body"}}, 1);
+  store.add_project("default", {{"a/1", "body"}}, 1);
   for (const char* invalid :
        {"INSERT INTO revisions VALUES (9, 1, 2, 1, printf('%064d', 0), 'text is no blob')",
         "INSERT INTO revisions VALUES (9, 1, 3, 1, printf('%064d', 0), x'00')",

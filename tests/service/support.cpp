@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
 #include <thread>
@@ -235,7 +236,7 @@ Bench::Bench(StudyFunctions studies, int threads, const QueueLimits& limits,
 
 void Bench::open(StudyFunctions studies) {
   store_ = std::make_unique<Store>(folder_.file("tribodyn.db"));
-  store_->add_resources(seed_resources(), system_time());
+  store_->add_project("default", seed_resources(), system_time());
   SimulationJobs::Options options;
   options.threads = threads_;
   options.limits = limits_;
@@ -278,6 +279,19 @@ v1::Simulation Bench::get(const std::string& name) {
 
 bool Bench::reaches(const std::string& name, v1::Simulation::State state) {
   return eventually([&] { return get(name).state() == state; });
+}
+
+std::vector<double> history_rows(Store& store, std::int64_t simulation, const std::string& column,
+                                 std::int64_t start, std::int64_t count) {
+  const HistoryShape shape = store.history_shape(simulation);
+  const auto found = std::find(shape.names.begin(), shape.names.end(), column);
+  std::vector<double> values(static_cast<std::size_t>(count));
+  if (found == shape.names.end() ||
+      !store.read_history(shape.columns[static_cast<std::size_t>(found - shape.names.begin())], 0,
+                          start, values)) {
+    throw std::runtime_error("the history has no such column");
+  }
+  return values;
 }
 
 }  // namespace tribodyn::server

@@ -125,4 +125,8 @@ class Bench {
   std::unique_ptr<SimulationJobs> jobs_;
 };
 
+/// Returns rows [start, start + count) of one column of a history, which must exist.
+std::vector<double> history_rows(Store& store, std::int64_t simulation, const std::string& column,
+                                 std::int64_t start, std::int64_t count);
+
 }  // namespace tribodyn::server

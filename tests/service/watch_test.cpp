@@ -399,7 +399,7 @@ TEST_F(WatchTest, EveryWatchHasEachEventOnceWhereverItBeginsAndWheneverItReads) 
     bench_.store().add_simulation({.request = "r",
                                    .key = key,
                                    .labels = {{"part", is_even ? "even" : "odd"}},
-                                   .lubricant_revision = "lubricants/paper-fluid-1@1"},
+                                   .revisions = {.lubricant = "lubricants/paper-fluid-1@1"}},
                                   1);
     names.push_back("simulations/" + std::to_string(i + 1));
     if (is_even) even.push_back(names.back());
