@@ -35,15 +35,6 @@ google::rpc::BadRequest bad_request(const Violations& violations) {
   return out;
 }
 
-google::rpc::Status about_resource(google::rpc::Status status, const std::string& type,
-                                   const std::string& name) {
-  google::rpc::ResourceInfo info;
-  info.set_resource_type(type);
-  info.set_resource_name(name);
-  status.add_details()->PackFrom(info);
-  return status;
-}
-
 /// Adds a RetryInfo. Its delay is `seconds`, rounded up to a millisecond.
 google::rpc::Status with_retry(google::rpc::Status status, double seconds) {
   google::rpc::RetryInfo info;
@@ -73,9 +64,17 @@ google::rpc::Status make_error(google::rpc::Code code, const std::string& reason
   return status;
 }
 
-ErrorMetadata with_name(ErrorMetadata metadata, const std::string& name) {
+/// Returns an error with ResourceInfo, whose metadata name the resource too.
+google::rpc::Status resource_error(google::rpc::Code code, v1::ErrorReason reason,
+                                   const std::string& type, const std::string& name,
+                                   const std::string& message, ErrorMetadata metadata = {}) {
   metadata.emplace("name", name);
-  return metadata;
+  google::rpc::Status status = error(code, reason, message, metadata);
+  google::rpc::ResourceInfo info;
+  info.set_resource_type(type);
+  info.set_resource_name(name);
+  status.add_details()->PackFrom(info);
+  return status;
 }
 
 }  // namespace
@@ -112,31 +111,28 @@ google::rpc::Status with_violations(google::rpc::Status status, const Violations
 
 google::rpc::Status not_found(const std::string& type, const std::string& name,
                               const std::string& message, v1::ErrorReason reason) {
-  return about_resource(error(google::rpc::NOT_FOUND, reason, message, {{"name", name}}), type,
-                        name);
+  return resource_error(google::rpc::NOT_FOUND, reason, type, name, message);
 }
 
 google::rpc::Status already_exists(v1::ErrorReason reason, const std::string& type,
                                    const std::string& name, const std::string& message,
                                    const ErrorMetadata& metadata, const Violations& violations) {
-  const google::rpc::Status status = about_resource(
-      error(google::rpc::ALREADY_EXISTS, reason, message, with_name(metadata, name)), type, name);
+  const google::rpc::Status status =
+      resource_error(google::rpc::ALREADY_EXISTS, reason, type, name, message, metadata);
   return violations.empty() ? status : with_violations(status, violations);
 }
 
 google::rpc::Status not_possible(v1::ErrorReason reason, const std::string& type,
                                  const std::string& name, const std::string& message,
                                  const ErrorMetadata& metadata) {
-  return about_resource(
-      error(google::rpc::FAILED_PRECONDITION, reason, message, with_name(metadata, name)), type,
-      name);
+  return resource_error(google::rpc::FAILED_PRECONDITION, reason, type, name, message, metadata);
 }
 
 google::rpc::Status aborted(v1::ErrorReason reason, const std::string& type,
                             const std::string& name, const std::string& message, bool may_retry,
                             const ErrorMetadata& metadata) {
-  const google::rpc::Status status = about_resource(
-      error(google::rpc::ABORTED, reason, message, with_name(metadata, name)), type, name);
+  const google::rpc::Status status =
+      resource_error(google::rpc::ABORTED, reason, type, name, message, metadata);
   return may_retry ? with_retry(status, kContentionSeconds) : status;
 }
 
@@ -162,14 +158,13 @@ google::rpc::Status store_failed(const StoreError& failure) {
                  "damage; a forced run computes a result again, and a backup restores the rest");
   }
   const bool is_misplaced = failure.kind() == StoreError::Kind::kMisplaced;
-  return with_retry(
-      is_misplaced
-          ? error(google::rpc::UNAVAILABLE, v1::ERROR_REASON_DATABASE_MISPLACED,
-                  "the database's file was deleted, renamed or replaced on the server; nothing is "
-                  "written until it is back")
-          : error(google::rpc::UNAVAILABLE, v1::ERROR_REASON_STORE_FAILED,
-                  "the database could not be read or written"),
-      kStoreSeconds);
+  return with_retry(is_misplaced
+                        ? error(google::rpc::UNAVAILABLE, v1::ERROR_REASON_DATABASE_MISPLACED,
+                                "the database's file was deleted, renamed or replaced on the "
+                                "server; nothing is written until it is back")
+                        : error(google::rpc::UNAVAILABLE, v1::ERROR_REASON_STORE_FAILED,
+                                "the database could not be read or written"),
+                    kStoreSeconds);
 }
 
 google::rpc::Status exhausted(v1::ErrorReason reason, const std::string& message,

@@ -97,52 +97,45 @@ Method stream(Scope scope, StreamOutcome<Response> (*use_case)(Application&, con
 }
 
 /// The rows of the methods that every kind of resource has.
-#define TRIBODYN_STANDARD_ROWS(Resource, field, collection, seed)                                 \
-  unary(Scope::kWrite, kWrite, write_resource<v1::Resource, v1::Create##Resource##Request>),      \
-      unary(Scope::kWrite, kHeavy,                                                                \
-            write_batch<v1::Resource, v1::BatchCreate##Resource##sResponse,                       \
-                        v1::BatchCreate##Resource##sRequest>),                                    \
-      unary(Scope::kRead, kRead, get_resource<v1::Resource, v1::Get##Resource##Request>),         \
-      unary(Scope::kRead, kSearch,                                                                \
-            list_resources<v1::Resource, v1::List##Resource##sResponse,                           \
-                           v1::List##Resource##sRequest>),                                        \
-      unary(Scope::kWrite, kWrite, write_resource<v1::Resource, v1::Update##Resource##Request>),  \
-      unary(Scope::kWrite, kHeavy,                                                                \
-            write_batch<v1::Resource, v1::BatchUpdate##Resource##sResponse,                       \
-                        v1::BatchUpdate##Resource##sRequest>),                                    \
-      unary(Scope::kRead, kSearch,                                                                \
-            list_revisions<v1::Resource, v1::List##Resource##RevisionsResponse,                   \
-                           v1::List##Resource##RevisionsRequest>),                                \
-      unary(Scope::kWrite, kWrite, delete_resource<v1::Resource, v1::Delete##Resource##Request>), \
-      unary(Scope::kWrite, kWrite,                                                                \
-            undelete_resource<v1::Resource, v1::Undelete##Resource##Request>),                    \
+#define TRIBODYN_STANDARD_ROWS(Resource, field, collection, seed)                                \
+  unary(Scope::kWrite, kWrite, write_resource<v1::Resource, v1::Create##Resource##Request>),     \
+      unary(Scope::kWrite, kHeavy,                                                               \
+            write_batch<v1::Resource, v1::BatchCreate##Resource##sResponse,                      \
+                        v1::BatchCreate##Resource##sRequest>),                                   \
+      unary(Scope::kRead, kRead, get_resource<v1::Resource, v1::Get##Resource##Request>),        \
+      unary(Scope::kRead, kSearch,                                                               \
+            list_resources<v1::Resource, v1::List##Resource##sResponse,                          \
+                           v1::List##Resource##sRequest>),                                       \
+      unary(Scope::kWrite, kWrite, write_resource<v1::Resource, v1::Update##Resource##Request>), \
+      unary(Scope::kWrite, kHeavy,                                                               \
+            write_batch<v1::Resource, v1::BatchUpdate##Resource##sResponse,                      \
+                        v1::BatchUpdate##Resource##sRequest>),                                   \
+      unary(Scope::kRead, kSearch,                                                               \
+            list_revisions<v1::Resource, v1::List##Resource##RevisionsResponse,                  \
+                           v1::List##Resource##RevisionsRequest>),                               \
+      unary(Scope::kWrite, kWrite,                                                               \
+            set_deleted<true, v1::Resource, v1::Delete##Resource##Request>),                     \
+      unary(Scope::kWrite, kWrite,                                                               \
+            set_deleted<false, v1::Resource, v1::Undelete##Resource##Request>),                  \
       unary(Scope::kAdmin, kHeavy, purge_resource<v1::Resource, v1::Purge##Resource##Request>),
 
 std::vector<Method> rows() {
   using enum CallLane;
   std::vector<Method> out = {TRIBODYN_RESOURCE_KINDS(TRIBODYN_STANDARD_ROWS)};
   const std::initializer_list<Method> others = {
-      unary<v1::ImportLubricantRequest, v1::Lubricant>(Scope::kWrite, kHeavy, import_lubricant),
-      unary<v1::ImportGearSetRequest, v1::GearSet>(Scope::kWrite, kHeavy, import_gear_set),
-      unary<v1::ImportSurfaceProfilesRequest, v1::Surface>(Scope::kWrite, kHeavy,
-                                                           import_surface_profiles),
+      unary(Scope::kWrite, kHeavy, import_lubricant),
+      unary(Scope::kWrite, kHeavy, import_gear_set),
+      unary(Scope::kWrite, kHeavy, import_surface_profiles),
 
       unary(Scope::kRead, kRead, get_schema),
-      unary<v1::EvaluateContactRequest, v1::EvaluateContactResponse>(Scope::kRead, kSearch,
-                                                                     evaluate_contact),
-      unary<v1::EvaluatePointsRequest, v1::EvaluatePointsResponse>(Scope::kRead, kCompute,
-                                                                   evaluate_points),
-      unary<v1::EvaluateCycleRequest, v1::EvaluateCycleResponse>(Scope::kRead, kCompute,
-                                                                 evaluate_cycle),
-      unary<v1::EvaluateProfilesRequest, v1::EvaluateProfilesResponse>(Scope::kRead, kHeavy,
-                                                                       evaluate_profiles),
-      unary<v1::EvaluateRigRequest, v1::EvaluateRigResponse>(Scope::kRead, kCompute, evaluate_rig),
-      unary<v1::EvaluateViscosityRequest, v1::EvaluateViscosityResponse>(Scope::kRead, kSearch,
-                                                                         evaluate_viscosity),
-      unary<v1::ComparePointsRequest, v1::ComparePointsResponse>(Scope::kRead, kCompute,
-                                                                 compare_points),
-      unary<v1::ExplainPointsRequest, v1::ExplainPointsResponse>(Scope::kRead, kCompute,
-                                                                 explain_points),
+      unary(Scope::kRead, kSearch, evaluate_contact),
+      unary(Scope::kRead, kCompute, evaluate_points),
+      unary(Scope::kRead, kCompute, evaluate_cycle),
+      unary(Scope::kRead, kHeavy, evaluate_profiles),
+      unary(Scope::kRead, kCompute, evaluate_rig),
+      unary(Scope::kRead, kSearch, evaluate_viscosity),
+      unary(Scope::kRead, kCompute, compare_points),
+      unary(Scope::kRead, kCompute, explain_points),
 
       unary(Scope::kWrite, kWrite, create_simulation),
       unary(Scope::kRead, kRead, get_simulation),
@@ -166,8 +159,7 @@ std::vector<Method> rows() {
       unary(Scope::kWrite, kWrite, resume_campaign),
       unary(Scope::kWrite, kWrite, cancel_campaign),
       unary(Scope::kWrite, kWrite, delete_campaign),
-      unary<v1::RankCandidatesRequest, v1::RankCandidatesResponse>(Scope::kRead, kCompute,
-                                                                   rank_candidates),
+      unary(Scope::kRead, kCompute, rank_candidates),
       unary(Scope::kRead, kSearch, find_pareto_candidates),
       unary(Scope::kRead, kSearch, estimate_candidate_effects),
       unary(Scope::kWrite, kWrite, promote_candidate),

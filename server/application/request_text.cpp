@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <sstream>
 
 #include "server/contract/canonical_text.h"
 #include "server/contract/output_only.h"
@@ -19,17 +18,12 @@ std::string request_text(const v1::Simulation& requested, bool force) {
 }
 
 std::string first_difference(const std::string& one, const std::string& other) {
-  std::istringstream lines(one);
-  std::istringstream other_lines(other);
-  std::string line;
-  std::string other_line;
-  for (;;) {
-    const bool more = static_cast<bool>(std::getline(lines, line));
-    const bool other_more = static_cast<bool>(std::getline(other_lines, other_line));
-    if (!more && !other_more) return {};
-    if (!more) return other_line.substr(0, other_line.find('='));
-    if (!other_more || line != other_line) return line.substr(0, line.find('='));
-  }
+  if (one == other) return {};
+  const auto differs = std::mismatch(one.begin(), one.end(), other.begin(), other.end()).first;
+  const std::string equal(one.begin(), differs);
+  const std::size_t begin = equal.rfind('\n') + 1;  // of the line; 0 in the first one
+  const std::string& text = begin < one.size() ? one : other;
+  return text.substr(begin, text.find('=', begin) - begin);
 }
 
 void check_request_id(const std::string& request_id, Violations& violations) {

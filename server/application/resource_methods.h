@@ -134,8 +134,8 @@ Outcome<Resource> get_resource(Application& application, const Request& request,
 
 /// Deletes, also what is deleted already, or undeletes; ALREADY_EXISTS for what is not deleted
 /// (AIP-164).
-template <class Resource, class Request>
-Outcome<Resource> set_deleted(Application& application, const Request& request, bool deleted,
+template <bool deleted, class Resource, class Request>
+Outcome<Resource> set_deleted(Application& application, const Request& request,
                               const CallContext& call) {
   for (int attempt = 0; attempt < kUpdateAttempts; ++attempt) {
     const auto found = find_stored<Resource>(application, request.name(), false, call);
@@ -157,18 +157,6 @@ Outcome<Resource> set_deleted(Application& application, const Request& request, 
     }
   }
   return contention<Resource>(request.name());
-}
-
-template <class Resource, class Request>
-Outcome<Resource> delete_resource(Application& application, const Request& request,
-                                  const CallContext& call) {
-  return set_deleted<Resource>(application, request, true, call);
-}
-
-template <class Resource, class Request>
-Outcome<Resource> undelete_resource(Application& application, const Request& request,
-                                    const CallContext& call) {
-  return set_deleted<Resource>(application, request, false, call);
 }
 
 /// Why a resource cannot be purged as the request asks; nullopt if it can.
