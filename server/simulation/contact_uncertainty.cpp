@@ -31,7 +31,7 @@ std::vector<const FieldDescriptor*> contact_figures() {
   return out;
 }
 
-double value_of(const v1::EvaluateContactResponse& contact, const FieldDescriptor* figure) {
+double figure_of(const v1::EvaluateContactResponse& contact, const FieldDescriptor* figure) {
   return contact.GetReflection()->GetDouble(contact, figure);
 }
 
@@ -111,7 +111,8 @@ LinearEffects linear_effects(const std::vector<const FieldDescriptor*>& figures,
       const v1::EvaluateContactResponse& low = minus ? *minus : stated;
       const double sides = plus && minus ? 2 : 1;
       for (std::size_t f = 0; f < figures.size(); ++f) {
-        out.variance[f] += square((value_of(high, figures[f]) - value_of(low, figures[f])) / sides);
+        out.variance[f] +=
+            square((figure_of(high, figures[f]) - figure_of(low, figures[f])) / sides);
       }
       change = (high.friction_coefficient() - low.friction_coefficient()) / sides;
       squares += square(change);
@@ -160,11 +161,11 @@ void add_uncertainties(const v1::Lubricant& lubricant, int draws, const SolveCon
       continue;
     }
     for (std::size_t f = 0; f < figures.size(); ++f) {
-      drawn[f].push_back(value_of(*contact, figures[f]));
+      drawn[f].push_back(figure_of(*contact, figures[f]));
     }
   }
   for (std::size_t f = 0; f < figures.size(); ++f) {
-    const double stated = value_of(response, figures[f]);
+    const double stated = figure_of(response, figures[f]);
     if (!std::isfinite(stated)) continue;
     const Spread spread = spread_of_draws(std::move(drawn[f]), draws, stated);
     if (spread.standard_deviation == 0) continue;

@@ -118,7 +118,7 @@ TEST_P(OldSchema, IsMigratedAndLosesNothing) {
   v1::Simulation request;
   ASSERT_TRUE(request.ParseFromString(store.simulation(2)->request));
   ASSERT_EQ(request.gear_set(), "");
-  set_accepted_names(*store.simulation(2), request);
+  set_accepted_names(store.simulation(2)->revisions, request);
   EXPECT_EQ(request.gear_set(), "gearSets/A") << "and is computed with that";
   v1::SimulationResult result;
   ASSERT_TRUE(result.ParseFromString(*store.result(1)));
