@@ -161,9 +161,14 @@ Estimate estimate_density_15(BaseOilClass base_oil) {
     double density, relative_uncertainty;
   };
   static constexpr Typical kTypical[] = {
-      // in the order of BaseOilClass
-      {880, 0.05}, {885, 0.03}, {870, 0.03},  {850, 0.03},
-      {845, 0.03}, {930, 0.03}, {1020, 0.05}, {910, 0.03},
+      {880, 0.05},   // unspecified
+      {885, 0.03},   // group I
+      {870, 0.03},   // group II
+      {850, 0.03},   // group III
+      {845, 0.03},   // polyalphaolefin
+      {930, 0.03},   // ester
+      {1020, 0.05},  // polyalkylene glycol
+      {910, 0.03},   // naphthenic
   };
   static_assert(std::size(kTypical) == kBaseOilClasses);
   const Typical& typical = kTypical[static_cast<int>(base_oil)];
