@@ -87,18 +87,17 @@ TEST(ClaimPolicy, IsBoundedByCostAndLeavesRoomForOthers) {
   EXPECT_TRUE(policy.reserve({5, "b", 100}, {}).is_admitted);
 }
 
-/// 2,000 jobs are submitted at once to a queue of 300. Two threads take `job_seconds` for each, ten
-/// times its estimate, and at first, while the submissions take the processors too, five times as
-/// long. A refused job is submitted again after its retry delay.
+/// Jobs are submitted at once to a queue of 300. Two threads take `job_seconds` for each, ten times
+/// its estimate, and `first_jobs_seconds` for each of the first 40, while the submissions take the
+/// processors too. A refused job is submitted again after its retry delay.
 struct Crowd {
   double tries = 0;    // for a job
   double seconds = 0;  // until all have run, over the time for which threads compute
 };
-Crowd crowd_of(double job_seconds) {
-  constexpr int kJobs = 2000;
+Crowd crowd_of(int jobs, double job_seconds, double first_jobs_seconds) {
   ClaimPolicy policy = policy_of(2, {.jobs = 400});
   std::multimap<double, std::int64_t> submissions, ends;  // by time [s]
-  for (int id = 1; id <= kJobs; ++id) submissions.emplace(1e-4 * id, id);
+  for (int id = 1; id <= jobs; ++id) submissions.emplace(1e-4 * id, id);
   Crowd out;
   double time = 0, computed = 0;
   while (!submissions.empty() || !ends.empty()) {
@@ -113,7 +112,7 @@ Crowd crowd_of(double job_seconds) {
       const auto now = Turns::Time() + std::chrono::duration_cast<Turns::Time::duration>(
                                            std::chrono::duration<double>(1 + time));
       const Admission admission = policy.reserve(job, now);
-      out.tries += 1.0 / kJobs;
+      out.tries += 1.0 / jobs;
       if (admission.is_admitted) policy.push(job);
       if (!admission.is_admitted) submissions.emplace(time + admission.retry_seconds, id);
     } else {
@@ -121,7 +120,7 @@ Crowd crowd_of(double job_seconds) {
       policy.end(id);
     }
     while (ends.size() < 2 && policy.may_begin()) {
-      const double seconds = computed < 100 * job_seconds ? 5 * job_seconds : job_seconds;
+      const double seconds = computed < 20 * first_jobs_seconds ? first_jobs_seconds : job_seconds;
       computed += seconds / 2;
       ends.emplace(time + seconds, begun(policy));
     }
@@ -132,9 +131,18 @@ Crowd crowd_of(double job_seconds) {
 
 TEST(ClaimPolicy, RefusedJobsComeBackAtThePaceAtWhichPlacesBecomeFree) {
   for (const double job_seconds : {0.004, 0.03, 1.0}) {
-    const Crowd crowd = crowd_of(job_seconds);
+    const Crowd crowd = crowd_of(2000, job_seconds, 5 * job_seconds);
     EXPECT_LT(crowd.tries, 6) << job_seconds << " s for each job";
     EXPECT_LT(crowd.seconds, 1.1) << "the queue runs dry";
+  }
+}
+
+TEST(ClaimPolicy, ACrowdOfManyTimesTheQueueComesBackAFewTimesAtASteadyPace) {
+  for (const double job_seconds : {0.004, 0.03, 1.0}) {
+    const Crowd crowd = crowd_of(8000, job_seconds, job_seconds);
+    EXPECT_LT(crowd.tries, 10) << job_seconds << " s for each job; 20 if no delay is longer than "
+                               << "1.5 times what the waiting work takes";
+    EXPECT_LT(crowd.seconds, 1.02) << "the queue runs dry";
   }
 }
 
