@@ -5,7 +5,7 @@
 namespace tribodyn {
 namespace {
 
-/// What is kept of the contacts of a response; friction first.
+/// A figure that SolvedContacts stores for each contact. Friction is the first row.
 struct SolvedRow {
   double* FlankContactBatchResults::*array;
   double ContactFigures::*member;

@@ -298,12 +298,12 @@ class Watch : public MessageSource<v1::SimulationEvent> {
   std::map<std::int64_t, Running> running_;                 // by row; each is in watched_
   std::vector<std::shared_ptr<ProgressChannel>> channels_;  // until observe()
   std::weak_ptr<Observer> observer_;
-  std::vector<StoredEvent> events_;  // read and not told, the latest first
+  std::vector<StoredEvent> events_;  // read but not sent, the latest first
   bool may_have_more_ = true;        // there are more events, or none was read yet
   std::uint64_t seen_changes_ = 0;   // Store::changes() before the last read
-  std::int64_t told_through_;        // all events up to this number were told
-  std::int64_t read_through_ = 0;    // the same once events_ are told
-  std::int64_t last_in_turn_ = 0;    // row of the last simulation whose progress was told
+  std::int64_t told_through_;        // all events up to this number were sent
+  std::int64_t read_through_ = 0;    // the same after events_ are sent
+  std::int64_t last_in_turn_ = 0;    // row of the simulation whose progress was sent last
   steady_clock::time_point last_message_ = steady_clock::now();
 };
 

@@ -6,8 +6,9 @@ namespace {
 constexpr std::uint64_t kEnoughJobs = 16;       // for a measurement
 constexpr std::chrono::seconds kEnoughTime{1};  // with at least one job
 constexpr double kShareOfNewMeasurement = 0.5;  // the others weigh half as much each time
-/// Pace over that of the steady period, or its inverse, at which a new period begins. Measurements
-/// of 16 jobs of service_benchmark differ by up to 1.6.
+/// Ratio of the present pace to the mean of the steady period, or its inverse, at which a new
+/// period begins. Not fitted: above what commits in groups do to a measurement of few jobs, below
+/// the fivefold change of the simulated crowd.
 constexpr double kChangedPace = 2;
 
 }  // namespace
