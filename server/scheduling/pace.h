@@ -15,7 +15,7 @@ class Pace {
   /// no place. Returns the mean time between two of them [s]; 0 until it is known.
   double seconds_per_job(std::uint64_t left, Time now);
 
-  /// Returns the number of jobs that have left at about the present pace, one after the other.
+  /// Returns the number of jobs that have left since the pace last changed by a factor of two.
   std::uint64_t steady_jobs() const { return steady_jobs_; }
 
   /// Without a call for so long the queue may have had places, and a new measurement begins.

@@ -107,8 +107,8 @@ bool query_history(Connection& db, std::int64_t column, int level, std::int64_t 
                    std::span<double> values) {
   const auto count = static_cast<std::int64_t>(values.size());
   if (count == 0) return true;
-  // Stays open until the end: while a statement is, the next ones lock the database no further
-  // time.
+  // Open until the function ends: while one statement is open, SQLite does not lock the database
+  // again for the next.
   Prepared rows(db, kRowsOfColumn, column);
   if (!rows.executeStep()) return false;
   const std::int64_t size = level_size(level, rows.getColumn(0).getInt64());

@@ -43,7 +43,7 @@ void insert_history_column(Connection& db, std::int64_t result, std::int64_t pos
 
 /// Returns the columns and rows of the history of a result.
 HistoryShape query_history_shape(Connection& db, std::int64_t result);
-/// Returns those of the result of a simulation, none if it has no result.
+/// Returns the columns and rows of the history of a simulation; none if it has no result.
 HistoryShape query_history_shape_of(Connection& db, std::int64_t simulation);
 
 /// Like Store::read_history.

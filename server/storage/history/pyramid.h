@@ -44,9 +44,9 @@ inline constexpr int kLeastMaximumPoints = 4;
 Overview overview(std::int64_t start, std::int64_t end, std::int64_t total,
                   std::int64_t maximum_points);
 
-/// Returns pairs [first, first + count) of an overview: minimum, maximum, minimum, ... Reads levels
-/// finer than that of whole runs only where the range cuts a run, which the end of a column does
-/// not.
+/// Returns pairs [first, first + count) of an overview: minimum, maximum, minimum, ... Whole
+/// runs are read from one level, and finer levels only where the range cuts a run; a range to the
+/// end of the column cuts none there.
 std::vector<double> overview_pairs(const Overview& overview, std::int64_t first, std::int64_t count,
                                    const ReadLevel& read);
 
