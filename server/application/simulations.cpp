@@ -157,14 +157,21 @@ std::optional<Outcome<v1::Simulation>> earlier_answer(Application& application,
   return to_message(application, *stored);
 }
 
-/// Sets the part of the result that `view` includes (`fallback` if it is unspecified), if the
-/// simulation has a result.
+/// Sets the part of the result that `view` includes (`fallback` if it is unspecified), if the mask
+/// asks for it and the simulation has a result.
 void set_result(Application& application, v1::SimulationView view, v1::SimulationView fallback,
-                std::int64_t id, v1::Simulation& out, const CallContext& call) {
+                const ReadMask& mask, std::int64_t id, v1::Simulation& out,
+                const CallContext& call) {
   const v1::SimulationView meant = view == v1::SIMULATION_VIEW_UNSPECIFIED ? fallback : view;
-  if (meant == v1::SIMULATION_VIEW_BASIC) return;
-  const auto result = application.store.result(id, call.limits);
+  if (meant == v1::SIMULATION_VIEW_BASIC || !mask.asks_for("result")) return;
+  auto result = application.store.result(id, call.limits);
   if (!result) return;
+  if (call.sends_wire_format && meant == v1::SIMULATION_VIEW_FULL && mask.is_whole()) {
+    // Stored bytes are the wire format: as an unknown field they are sent without being parsed.
+    auto* unknown = v1::Simulation::GetReflection()->MutableUnknownFields(&out);
+    *unknown->AddLengthDelimited(v1::Simulation::kResultFieldNumber) = *std::move(result);
+    return;
+  }
   out.mutable_result()->ParseFromString(*result);
   if (meant == v1::SIMULATION_VIEW_SUMMARY) summarise(*out.mutable_result());
 }
@@ -262,10 +269,8 @@ Outcome<v1::Simulation> get_simulation(Application& application,
   const auto found = find_simulation(application, request.name(), call);
   if (!found.ok()) return found.error();
   v1::Simulation out = to_message(application, found.message());
-  if (mask.asks_for("result")) {
-    set_result(application, request.view(), v1::SIMULATION_VIEW_FULL, found.message().id, out,
-               call);
-  }
+  set_result(application, request.view(), v1::SIMULATION_VIEW_FULL, mask, found.message().id, out,
+             call);
   mask.apply(out);
   return out;
 }
@@ -311,9 +316,7 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
   bool is_cut = false;
   for (const StoredSimulation& row : page.rows) {
     v1::Simulation next = to_message(application, row);
-    if (mask.asks_for("result")) {
-      set_result(application, request.view(), fallback, row.id, next, call);
-    }
+    set_result(application, request.view(), fallback, mask, row.id, next, call);
     mask.apply(next);
     bytes += next.ByteSizeLong();
     is_cut = response.simulations_size() > 0 && bytes > kMaximumPageBytes;
@@ -336,13 +339,13 @@ Outcome<v1::Simulation> set_pinned(Application& application, const std::string& 
   const auto found = find_simulation(application, name, call);
   if (!found.ok()) return found.error();
   // All reads come before the write: after the commit the call must not fail.
-  v1::Simulation before;
-  set_result(application, v1::SIMULATION_VIEW_FULL, v1::SIMULATION_VIEW_FULL, found.message().id,
-             before, call);
+  v1::Simulation result;
+  set_result(application, v1::SIMULATION_VIEW_FULL, v1::SIMULATION_VIEW_FULL, {},
+             found.message().id, result, call);
   const auto pinned = application.store.set_pinned(found.message().id, is_pinned, call.limits);
   if (!pinned) return does_not_exist(name);
   v1::Simulation out = to_message(application, *pinned);
-  if (before.has_result()) *out.mutable_result() = std::move(*before.mutable_result());
+  out.MergeFrom(result);
   return out;
 }
 

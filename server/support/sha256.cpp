@@ -11,10 +11,10 @@ namespace {
 
 std::string to_hex(const unsigned char* bytes, unsigned int length) {
   static constexpr char kDigits[] = "0123456789abcdef";
-  std::string hex;
+  std::string hex(std::size_t{2} * length, '0');
   for (unsigned int i = 0; i < length; ++i) {
-    hex += kDigits[bytes[i] >> 4U];
-    hex += kDigits[bytes[i] & 15U];
+    hex[2 * i] = kDigits[bytes[i] >> 4U];
+    hex[2 * i + 1] = kDigits[bytes[i] & 15U];
   }
   return hex;
 }

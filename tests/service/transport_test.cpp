@@ -197,5 +197,18 @@ TEST(Acceptor, RefusesConnectionsAboveItsLimit) {
   for (const int connection : taken) close(connection);
 }
 
+TEST(Acceptor, ItsConnectionsDelayNoShortAnswerUntilAnAcknowledgement) {
+  Acceptor acceptor({"127.0.0.1", 0, ""});
+  std::atomic<int> taken = -1;
+  acceptor.start([&](int, int connection) { taken = connection; });
+  const SilentConnections client(acceptor.address().port, 1);
+  ASSERT_TRUE(eventually([&] { return taken >= 0; }));
+  int sends_at_once = 0;
+  socklen_t size = sizeof(sends_at_once);
+  EXPECT_EQ(getsockopt(taken, IPPROTO_TCP, TCP_NODELAY, &sends_at_once, &size), 0);
+  EXPECT_EQ(sends_at_once, 1);
+  close(taken);
+}
+
 }  // namespace
 }  // namespace tribodyn::server

@@ -33,6 +33,7 @@ class GrpcCall : public Call {
       : Call(its_method), request_(const_cast<grpc::ByteBuffer&>(request)) {
     const std::string peer = its_context.peer();
     this->context = call_context(its_context, peer, limit, cancelled_);
+    this->context.sends_wire_format = true;
     this->credentials = credentials_of(its_context, peer);
   }
 

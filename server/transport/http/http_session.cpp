@@ -1,7 +1,5 @@
 #include "server/transport/http/http_session.h"
 
-#include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 
@@ -96,10 +94,7 @@ HttpServer::Connections::Session::Session(Connections& all, int connection, std:
       all_(all),
       connection_(byte_stream(all.context_, connection, all.tls_ ? all.tls_->current() : nullptr)),
       stream_(*connection_),
-      timer_(all.context_) {
-  const int on = 1;
-  setsockopt(connection, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);  // fails for a Unix socket
-}
+      timer_(all.context_) {}
 
 void HttpServer::Connections::Session::start() {
   stream_.expires_after(all_.limits_.handshake_time);
