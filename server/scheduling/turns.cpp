@@ -1,6 +1,7 @@
 #include "server/scheduling/turns.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tribodyn::server {
 
@@ -25,7 +26,9 @@ double Turns::next(const std::string& principal, const Delays& delays, double wo
     turns_.erase(by_time_.begin()->second);
     by_time_.erase(by_time_.begin());
   }
-  return seconds;
+  if (delays.slot <= 0) return seconds;
+  const double end = duration<double>(now.time_since_epoch()).count() + seconds;
+  return seconds + std::ceil(end / delays.slot) * delays.slot - end;
 }
 
 }  // namespace tribodyn::server

@@ -10,23 +10,26 @@
 namespace tribodyn::server {
 
 /// Computes retry delays for refused requests. The requests of one principal get successive times
-/// at the rate at which the server computes them (pace.h), so that they do not all return at once.
+/// at the rate at which the server computes them (pace.h), so that they do not all return at once;
+/// those of a time slot return together, so that one commit takes several of them.
 /// Each call takes a time that grows with the logarithm of kMostKept at most. Not safe for
 /// concurrent access.
 class Turns {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// Limits of the delays of refused requests [s].
+  /// Limits of the delays of refused requests, and length of a slot [s].
   struct Delays {
     double least;
     double most;
+    double slot = 0;  ///< delays end at multiples of it; 0: anywhere
   };
 
   /// Returns the delay of the principal's next request [s]: the least one, or longer, until after
-  /// its requests that were refused before; kLeastSeconds to kMostSeconds. The request will occupy
-  /// the server for `work_seconds`. What would exceed the most begins at the least again: requests
-  /// then come more than once, but the server has work even if it becomes faster meanwhile.
+  /// its requests that were refused before; kLeastSeconds to kMostSeconds, then up to the end of a
+  /// slot. The request will occupy the server for `work_seconds`. What would exceed the most begins
+  /// at the least again: requests then come more than once, but the server has work even if it
+  /// becomes faster meanwhile.
   double next(const std::string& principal, const Delays& delays, double work_seconds, Time now);
 
   std::size_t size() const { return turns_.size(); }

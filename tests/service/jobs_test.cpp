@@ -151,6 +151,16 @@ TEST(Turns, SpreadsTheRetriesOfRefusedPrincipals) {
   EXPECT_EQ(turns.size(), 1U) << "turns that are past are forgotten";
 }
 
+TEST(Turns, RequestsOfASlotReturnTogetherAtItsEnd) {
+  Turns turns;
+  const Turns::Time now = Turns::Time() + std::chrono::milliseconds(100);
+  const Turns::Delays delays{0.05, 100, 0.25};
+  for (int i = 0; i < 30; ++i) {  // 10 ms apart, from 0.15 s on
+    const double time = 0.1 + turns.next("a", delays, 0.01, now);
+    EXPECT_NEAR(time, i <= 10 ? 0.25 : 0.5, 1e-9) << i;
+  }
+}
+
 TEST(Turns, RemembersABoundedNumberOfPrincipals) {
   Turns turns;
   for (std::size_t i = 0; i < 2 * Turns::kMostKept; ++i) {
