@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "server/simulation/result_key.h"
+#include "server/support/thread_priority.h"
 
 namespace tribodyn::server {
 namespace {
@@ -152,6 +153,7 @@ void Executor::run_simulation(Lease lease, bool may_lend) {
 }
 
 void Executor::compute_all() {
+  lower_priority_of_work();
   while (scheduler_.wait_for_work()) {
     try {
       if (auto lease = scheduler_.claim(LeaseTerms::kLocalWorker)) run(std::move(*lease), true);

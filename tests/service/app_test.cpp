@@ -585,6 +585,22 @@ TEST_F(AppTest, TheViewAndNotTheSizeOfAResultDecidesWhatIsTold) {
   }
 }
 
+TEST_F(AppTest, AResultThatIsSentUnparsedArrivesAsTheSameMessage) {
+  CallContext sent_as_bytes;
+  sent_as_bytes.sends_wire_format = true;
+  auto request = named<v1::GetSimulationRequest>(finished(curve_simulation()));
+  for (const auto view : {v1::SIMULATION_VIEW_UNSPECIFIED, v1::SIMULATION_VIEW_BASIC,
+                          v1::SIMULATION_VIEW_SUMMARY, v1::SIMULATION_VIEW_FULL}) {
+    request.set_view(view);
+    v1::Simulation received;
+    ASSERT_TRUE(received.ParseFromString(
+        get_simulation(app_, request, sent_as_bytes).message().SerializeAsString()));
+    EXPECT_EQ(received.SerializeAsString(),
+              get_simulation(app_, request).message().SerializeAsString());
+    EXPECT_EQ(received.has_result(), view != v1::SIMULATION_VIEW_BASIC);
+  }
+}
+
 /// Sets every field: numbers to what takes most bytes, lists to `elements` entries.
 void fill(google::protobuf::Message& message, int elements) {
   using google::protobuf::FieldDescriptor;
