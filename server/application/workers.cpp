@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "server/support/thread_priority.h"
-
 namespace tribodyn::server {
 namespace {
 
@@ -64,7 +62,6 @@ Workers::Task Workers::next() {
 }
 
 void Workers::work() {
-  lower_priority_of_work();
   std::unique_lock lock(mutex_);
   for (;;) {
     changed_.wait(lock, [this] { return stopping_ || waiting_ > 0; });

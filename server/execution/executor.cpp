@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "server/simulation/result_key.h"
-#include "server/support/thread_priority.h"
 
 namespace tribodyn::server {
 namespace {
@@ -153,7 +152,6 @@ void Executor::run_simulation(Lease lease, bool may_lend) {
 }
 
 void Executor::compute_all() {
-  lower_priority_of_work();
   while (scheduler_.wait_for_work()) {
     try {
       if (auto lease = scheduler_.claim(LeaseTerms::kLocalWorker)) run(std::move(*lease), true);

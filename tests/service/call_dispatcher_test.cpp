@@ -5,8 +5,6 @@
 #include <google/protobuf/descriptor_database.h>
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -24,7 +22,6 @@
 
 #include "google/rpc/code.pb.h"
 #include "server/application/list_filter.h"
-#include "server/support/thread_priority.h"
 #include "tests/service/resource_calls.h"
 #include "tests/service/support.h"
 #include "tribodyn/v1/cycles.pb.h"
@@ -420,19 +417,6 @@ TEST_F(CallDispatcherTest, EveryCallIsAnsweredOnceWhateverTheLoadAndWhoeverCance
     }
   }
   EXPECT_EQ(total, kThreads * kRounds) << counted;
-}
-
-TEST(Workers, GiveWayToTheThreadsThatReceiveMessages) {
-  const auto niceness = [] { return getpriority(PRIO_PROCESS, static_cast<id_t>(gettid())); };
-  const int own = niceness();
-  int of_worker = own;
-  {
-    Workers workers(1, 1, 1);
-    std::function<void()> task = [&] { of_worker = niceness(); };
-    ASSERT_TRUE(workers.run(0, task));
-  }
-  EXPECT_EQ(of_worker, std::min(own + kWorkNiceness, 19)) << "19 is the highest";
-  EXPECT_EQ(niceness(), own);
 }
 
 TEST(Workers, RefuseWhatTheirQueueHasNoPlaceFor) {
