@@ -1,6 +1,7 @@
 // Tests of requests that are too large, unreadable or incomplete, over gRPC.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <unistd.h>
 
