@@ -16,7 +16,7 @@ struct CallContext {
   std::string client = {};                ///< name of the client; clients share the processors
   std::string request_id = {};            ///< identifies the call in log lines
   CallLimits limits = {};          ///< deadline of the call, and whether the client cancelled
-  bool sends_wire_format = false;  ///< the answer is only serialized: no field of it is read
+  bool sends_wire_format = false;  ///< true: the transport reads no field of the answer
 };
 
 /// Returns whose share of threads and processors pays for a call. The owner's programs are told

@@ -157,8 +157,8 @@ std::optional<Outcome<v1::Simulation>> earlier_answer(Application& application,
   return to_message(application, *stored);
 }
 
-/// Sets the part of the result that `view` includes (`fallback` if it is unspecified), if the mask
-/// asks for it and the simulation has a result.
+/// Sets the part of the result that `view` includes (`fallback` if it is unspecified). Sets nothing
+/// if the read mask excludes the result or the simulation has none.
 void set_result(Application& application, v1::SimulationView view, v1::SimulationView fallback,
                 const ReadMask& mask, std::int64_t id, v1::Simulation& out,
                 const CallContext& call) {
@@ -167,7 +167,7 @@ void set_result(Application& application, v1::SimulationView view, v1::Simulatio
   auto result = application.store.result(id, call.limits);
   if (!result) return;
   if (call.sends_wire_format && meant == v1::SIMULATION_VIEW_FULL && mask.is_whole()) {
-    // Stored bytes are the wire format: as an unknown field they are sent without being parsed.
+    // The store holds results in the wire format, so the bytes can be sent without being parsed.
     auto* unknown = v1::Simulation::GetReflection()->MutableUnknownFields(&out);
     *unknown->AddLengthDelimited(v1::Simulation::kResultFieldNumber) = *std::move(result);
     return;

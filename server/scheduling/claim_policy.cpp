@@ -14,16 +14,17 @@ constexpr double kRetryProgressShare =
 /// become five times as fast; with 1 there are half again as many retries.
 constexpr double kLongestRetryShare = 1.5;
 /// The same once the pace is steady. Of 10,000 jobs at once in service_benchmark, nine times the
-/// queue, 2.9 and 3.2 refusals a job in two runs; 7.4 if the limit is 1.5 at any pace.
+/// queue, 2.9 and 3.2 refusals a job in two runs without slots; 7.4 if the limit is 1.5 at any
+/// pace.
 constexpr double kLongestRetryShareOfSteadyPace = 6;
 /// The pace is steady once so many jobs have left at about that pace, as a share of those that
 /// wait. In the simulated crowd 1 gives up to a fifth more tries than 0.5, and 0.25 up to a tenth
 /// fewer.
 constexpr double kSteadyShare = 0.5;
-/// Longest slot at whose end refused jobs come back together [s], and share of the time that the
-/// waiting work takes, which a slot does not exceed. In service_benchmark 10,000 jobs at once take
-/// 22, 21 and 28 s with slots of 0.25 s, 22, 22 and 20 s with 1 s, and 31, 27 and 34 s without
-/// slots: a commit then takes one job, and retries never leave the processors to the jobs.
+/// Refused jobs come back together at the end of a time slot. Its longest length [s], also as a
+/// share of the time that the waiting work takes. In service_benchmark 10,000 jobs at once take 22,
+/// 21 and 28 s with slots of 0.25 s, 22, 22 and 20 s with slots of 1 s, and 31, 27 and 34 s without
+/// slots: there each job needs a commit of its own, and retries always compete with computing.
 constexpr double kLongestSlot = 0.25;
 constexpr double kSlotShare = 0.25;
 /// Processor time around a small job: its call, its commits and its answer [s]; until the pace of
@@ -37,8 +38,8 @@ constexpr double kLeastAllowedSeconds = 0.1;
 /// Processor time that a job lends to interactive jobs before it has used as much itself [s].
 constexpr double kInteractiveCreditSeconds = 1;
 
-/// Returns the length of a slot [s]: a power of two, so that its multiples stay where they are when
-/// the waiting work changes little.
+/// Returns the length of a slot [s]: a power of two, so that small changes of the waiting work do
+/// not move the ends of the slots.
 double slot_of(double waiting_seconds) {
   return std::min(kLongestSlot, std::exp2(std::floor(std::log2(kSlotShare * waiting_seconds))));
 }

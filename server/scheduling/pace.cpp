@@ -7,8 +7,8 @@ constexpr std::uint64_t kEnoughJobs = 16;       // for a measurement
 constexpr std::chrono::seconds kEnoughTime{1};  // with at least one job
 constexpr double kShareOfNewMeasurement = 0.5;  // the others weigh half as much each time
 /// Ratio of the present pace to the mean of the steady period, or its inverse, at which a new
-/// period begins. Not fitted: above what commits in groups do to a measurement of few jobs, below
-/// the fivefold change of the simulated crowd.
+/// period begins. Not fitted: larger than the scatter of measurements of few jobs, which leave in
+/// groups, and smaller than the fivefold change in the tests.
 constexpr double kChangedPace = 2;
 
 }  // namespace

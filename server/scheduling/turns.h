@@ -11,7 +11,7 @@ namespace tribodyn::server {
 
 /// Computes retry delays for refused requests. The requests of one principal get successive times
 /// at the rate at which the server computes them (pace.h), so that they do not all return at once;
-/// those of a time slot return together, so that one commit takes several of them.
+/// those of a time slot return together, so that one commit can store several of them.
 /// Each call takes a time that grows with the logarithm of kMostKept at most. Not safe for
 /// concurrent access.
 class Turns {
@@ -22,7 +22,7 @@ class Turns {
   struct Delays {
     double least;
     double most;
-    double slot = 0;  ///< delays end at multiples of it; 0: anywhere
+    double slot = 0;  ///< a delay ends at a multiple of it; 0: at any time
   };
 
   /// Returns the delay of the principal's next request [s]: the least one, or longer, until after

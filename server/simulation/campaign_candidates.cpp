@@ -162,7 +162,7 @@ std::vector<PlacedFactor> uncertain_factors(const v1::Campaign& request,
   if (!base.lubricant || (!base.surface && !has_smooth_specimens(request))) return out;
   for (const std::string& parameter : candidate_parameter_names()) {
     PlacedFactor factor{parameter, find_candidate_parameter(parameter), {}};
-    if (factor.field == nullptr) continue;  // never: each listed name has one
+    if (factor.field == nullptr) continue;  // unreachable: each listed name has a field
     const std::optional<double> value = base_value(*factor.field, base);
     if (!value) continue;
     factor.median = *value;

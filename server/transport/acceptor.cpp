@@ -113,8 +113,8 @@ Acceptor::Acceptor(const ListenAddress& address, int maximum_connections)
   const int yes = 1;
   // Takes a port in TIME_WAIT, but not one with a listener.
   setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
-  // Connections inherit it. Otherwise a short answer waits until the client acknowledges the one
-  // before, which takes it up to 40 ms or until its next request. Fails for a Unix socket.
+  // Accepted connections inherit this option. Without it a short answer waits until the client has
+  // acknowledged the previous one: until its next request, or up to 40 ms. Fails for a Unix socket.
   setsockopt(listener_, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof(yes));
   if (listener_ < 0 || bind(listener_, name.get(), name.length) != 0 ||
       listen(listener_, kBacklog) != 0) {
