@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/driveline/motion-inl.h"
+#include "core/gear/flank_motion-inl.h"
 #include "core/numerics/square.h"
 
 namespace tribodyn {
@@ -13,10 +15,104 @@ GearPairSystem::GearPairSystem(const MeshData& mesh, const DrivelineDynamics& dy
     : mesh_(mesh),
       dynamics_(dynamics),
       options_(options),
-      inverse_{1 / dynamics.pinion_shaft_inertia, 1 / dynamics.pinion_inertia,
-               1 / dynamics.gear_inertia, 1 / dynamics.wheel_inertia},
-      lag_per_approach_(mesh.gear_teeth() / mesh.mean_gear_contact_radius()),
-      cycle_angle_(2 * std::numbers::pi / mesh.pinion_teeth()) {}
+      constants_{.pinion_shaft_stiffness = dynamics.pinion_shaft_stiffness,
+                 .pinion_shaft_damping = dynamics.pinion_shaft_damping,
+                 .gear_shaft_stiffness = dynamics.gear_shaft_stiffness,
+                 .gear_shaft_damping = dynamics.gear_shaft_damping,
+                 .per_pinion_shaft_inertia = 1 / dynamics.pinion_shaft_inertia,
+                 .per_pinion_inertia = 1 / dynamics.pinion_inertia,
+                 .per_gear_inertia = 1 / dynamics.gear_inertia,
+                 .per_wheel_inertia = 1 / dynamics.wheel_inertia,
+                 .mesh_damping = dynamics.mesh_damping,
+                 .half_backlash = dynamics.half_backlash,
+                 .pinion_radius = mesh.mean_pinion_contact_radius(),
+                 .gear_radius = mesh.mean_gear_contact_radius(),
+                 .cycle_angle = 2 * std::numbers::pi / mesh.pinion_teeth()},
+      lag_per_approach_(mesh.gear_teeth() / mesh.mean_gear_contact_radius()) {}
+
+void GearPairSystem::kinematics(const MeshPhase& phase, const ContactRegime& regime,
+                                const double* y, Mechanics& out) const {
+  // N_g phi_g = N_p phi_p - N_g (mesh approach)/R_g0, because R_g0 N_p = R_p0 N_g.
+  out.mesh = mesh_.functions(phase, lag_per_approach_ * y[kMeshApproach]);
+  HWY_NAMESPACE::set_mesh_force(constants_, regime.side, y, out);
+  if (regime.side != 0) return;
+  if (options_.damping_in_contact_only) out.damper_force = 0;
+  out.deflection = 0;
+  out.mesh_force = out.damper_force;
+}
+
+void GearPairSystem::mechanics(const MeshPhase& phase, const ContactRegime& regime, const double* y,
+                               Mechanics& out) const {
+  kinematics(phase, regime, y, out);
+  const auto shaft = HWY_NAMESPACE::shaft_torques(constants_, y);
+  out.pinion_shaft_torque = shaft.pinion;
+  out.gear_shaft_torque = shaft.gear;
+  out.pinion_friction_torque = out.gear_friction_torque = out.loss_power = 0;
+}
+
+void GearPairSystem::motion(const double* y, const Mechanics& at, const Torques& torques,
+                            double* dy) const {
+  HWY_NAMESPACE::motion(constants_, options_.energy_consistent, y, at, torques.pinion,
+                        torques.wheel, dy);
+}
+
+double GearPairSystem::parametric_torque(const Mechanics& at) {
+  return HWY_NAMESPACE::parametric_torque(at);
+}
+
+void GearPairSystem::motion(const MeshPhase& phase, const ContactRegime& regime, const double* y,
+                            const FrictionArms& friction, const Torques& torques, Mechanics& at,
+                            double* dy) const {
+  mechanics(phase, regime, y, at);
+  const double load = regime.load(at.mesh_force);
+  at.pinion_friction_torque = friction.pinion * load;
+  at.gear_friction_torque = friction.gear * load;
+  motion(y, at, torques, dy);
+}
+
+void GearPairSystem::slopes(const MeshPhase& phase, const ContactRegime& regime, const double* y,
+                            const Mechanics& at, const FrictionArms& friction,
+                            MotionSlopes& out) const {
+  const MeshFunctions& m = at.mesh;
+  const bool gap = regime.side == 0;
+  const double load_by_force = regime.load(at.mesh_force) > 0 ? regime.side : 0;
+  const double error_by_approach = m.gear_contact_radius / constants_.gear_radius;
+  const double radius_by_approach = gear_radius_by_approach(phase, y[kMeshApproach]);
+  out.relative_radius = m.pinion_contact_radius - m.static_transmission_error_slope;
+  out.gear_radius = m.gear_contact_radius;
+  out.damping = gap && options_.damping_in_contact_only ? 0 : constants_.mesh_damping;
+  out.force_by_approach = (gap ? 0 : m.mesh_stiffness * error_by_approach) -
+                          out.damping * radius_by_approach * y[kGearSpeed];
+  out.pinion_arm = load_by_force * friction.pinion - m.pinion_contact_radius;
+  out.gear_arm = load_by_force * friction.gear + m.gear_contact_radius;
+  out.pinion_torque_by_approach = 0;
+  out.gear_torque_by_approach = at.mesh_force * radius_by_approach;
+  if (options_.energy_consistent) {
+    out.pinion_arm += m.static_transmission_error_slope;
+    if (!gap) {
+      out.pinion_torque_by_approach = -m.mesh_stiffness_slope * at.deflection * error_by_approach;
+    }
+  }
+  out.time = out.rate[kTime];
+  out.per_speed = out.time / constants_.cycle_angle;
+}
+
+ContactConditions GearPairSystem::contact_conditions(const FlankKinematics& flank, double load,
+                                                     const double* y, FlankMotion& motion) const {
+  HWY_NAMESPACE::set_flank_motion(flank, y[kPinionSpeed], y[kGearSpeed],
+                                  options_.tabulated_friction_arms, motion);
+  FlankMotion by_contact = motion;  // velocities as the contact point has them
+  if (options_.subtract_contact_point_motion) {
+    HWY_NAMESPACE::subtract_drift(flank, y[kPinionSpeed], by_contact);
+  }
+  return {load,
+          flank.radius_x,
+          flank.radius_y,
+          by_contact.pinion_x,
+          by_contact.pinion_y,
+          by_contact.gear_x,
+          by_contact.gear_y};
+}
 
 double GearPairSystem::mesh_frequency() const {
   return std::sqrt(mesh_.mean_mesh_stiffness() *
@@ -102,7 +198,7 @@ ContactStatus GearPairSystem::evaluate(double phase, int interval, const Contact
 void GearPairSystem::derivative(const double* y, const Instant& at, const Torques& torques,
                                 double* dy) const {
   motion(y, at, torques, dy);
-  const double time_per_phase = cycle_angle_ / y[kPinionSpeed];
+  const double time_per_phase = constants_.cycle_angle / y[kPinionSpeed];
   dy[kLossWork] = at.loss_power * time_per_phase;
   dy[kLossShareSquared] =
       square(at.loss_power / input_speed(torques, y[kPinionShaftSpeed], y[kWheelSpeed])) *
@@ -152,8 +248,8 @@ void GearPairSystem::record_derivative(const double* y, const Instant& at,
   dy[kShaftDampingWork] = d.pinion_shaft_damping * square(y[kPinionShaftSpeed] - y[kPinionSpeed]) +
                           d.gear_shaft_damping * square(y[kGearSpeed] - y[kWheelSpeed]);
   dy[kMeshDampingWork] = at.damper_force * at.transmission_velocity;
-  if (!options_.energy_consistent) dy[kParametricWork] = at.parametric_torque() * y[kPinionSpeed];
-  const double time_per_phase = cycle_angle_ / y[kPinionSpeed];
+  if (!options_.energy_consistent) dy[kParametricWork] = parametric_torque(at) * y[kPinionSpeed];
+  const double time_per_phase = constants_.cycle_angle / y[kPinionSpeed];
   for (int i = kMarchComponents; i < kRecordComponents; ++i) dy[i] *= time_per_phase;
 }
 

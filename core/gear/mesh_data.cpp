@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/gear/flank_motion-inl.h"
+
 namespace tribodyn {
 namespace {
 
@@ -15,6 +17,12 @@ constexpr double kManyTurns = 1e6;                  // [rad] beyond, an angle ha
 constexpr std::size_t kMostExpandedHarmonics = 32;  // beyond, the expansions take too long to make
 
 }  // namespace
+
+FlankMotion flank_motion(const FlankKinematics& flank, double pinion_speed, double gear_speed) {
+  FlankMotion out;
+  HWY_NAMESPACE::set_flank_motion(flank, pinion_speed, gear_speed, false, out);
+  return out;
+}
 
 MeshData::MeshData(const GearSet& set)
     : pinion_teeth_(set.pinion_teeth),

@@ -12,17 +12,16 @@
 namespace tribodyn {
 
 /// Eqs 8-11 at one pair of angles, with what the closed-form transmission error and the energy
-/// terms need. Slopes are per radian of phi_p. Real: what depends on the gear's angle; double, or a
-/// dual number (core/numerics/dual-inl.h).
+/// terms need. Slopes are per radian of phi_p. Real: double or a pack.
 template <class Real>
 struct MeshFunctionsOf {
-  double pinion_contact_radius;            ///< R_p [m]
-  Real gear_contact_radius;                ///< R_g [m]
-  Real radius_integral;                    ///< series part of int R_p dphi_p - int R_g dphi_g [m]
-  double mesh_stiffness;                   ///< k_m [N/m]
-  double mesh_stiffness_slope;             ///< dk_m/dphi_p [N/m/rad]
-  double static_transmission_error;        ///< e [m]
-  double static_transmission_error_slope;  ///< de/dphi_p [m/rad]
+  Real pinion_contact_radius;            ///< R_p [m]
+  Real gear_contact_radius;              ///< R_g [m]
+  Real radius_integral;                  ///< series part of int R_p dphi_p - int R_g dphi_g [m]
+  Real mesh_stiffness;                   ///< k_m [N/m]
+  Real mesh_stiffness_slope;             ///< dk_m/dphi_p [N/m/rad]
+  Real static_transmission_error;        ///< e [m]
+  Real static_transmission_error_slope;  ///< de/dphi_p [m/rad]
 };
 using MeshFunctions = MeshFunctionsOf<double>;
 
@@ -34,15 +33,17 @@ struct MeshPhase {
   double offset = 0;                         ///< of theta from there [rad]
 };
 
-/// One flank pair at one mesh phase; columns of ToothContactTables.
-struct FlankKinematics {
-  double load_share;
-  double radius_x, radius_y;
-  double pinion_velocity_x, pinion_velocity_y;
-  double gear_velocity_x, gear_velocity_y;
-  double contact_point_velocity_x, contact_point_velocity_y;
-  double pinion_friction_arm, gear_friction_arm;
+/// One flank pair at one mesh phase; columns of ToothContactTables. Real: double or a pack.
+template <class Real>
+struct FlankKinematicsOf {
+  Real load_share;
+  Real radius_x, radius_y;
+  Real pinion_velocity_x, pinion_velocity_y;
+  Real gear_velocity_x, gear_velocity_y;
+  Real contact_point_velocity_x, contact_point_velocity_y;
+  Real pinion_friction_arm, gear_friction_arm;
 };
+using FlankKinematics = FlankKinematicsOf<double>;
 
 /// Where a column of the tables is in FlankKinematics, and what refusals call it.
 struct FlankColumn {
@@ -79,32 +80,8 @@ struct FlankMotionOf {
 };
 using FlankMotion = FlankMotionOf<double>;
 
-/// Velocities and lever arms r_p = -(dV . A_p)/V_s, r_g = (dV . A_g)/V_s with dV the sliding
-/// vector: the power identity is exact and holds when a shaft turns backwards. Without sliding both
-/// arms are 0.
-template <class Real>
-FlankMotionOf<Real> flank_motion_of(const FlankKinematics& k, const Real& pinion_speed,
-                                    const Real& gear_speed) {
-  using std::sqrt;
-  FlankMotionOf<Real> m{};
-  m.pinion_x = k.pinion_velocity_x * pinion_speed;
-  m.pinion_y = k.pinion_velocity_y * pinion_speed;
-  m.gear_x = k.gear_velocity_x * gear_speed;
-  m.gear_y = k.gear_velocity_y * gear_speed;
-  const Real slide_x = m.pinion_x - m.gear_x, slide_y = m.pinion_y - m.gear_y;
-  m.sliding_speed = sqrt(slide_x * slide_x + slide_y * slide_y);
-  if (m.sliding_speed > 0) {
-    const Real per_speed = 1 / m.sliding_speed;
-    m.pinion_friction_arm =
-        -per_speed * (slide_x * k.pinion_velocity_x + slide_y * k.pinion_velocity_y);
-    m.gear_friction_arm = per_speed * (slide_x * k.gear_velocity_x + slide_y * k.gear_velocity_y);
-  }
-  return m;
-}
-
-inline FlankMotion flank_motion(const FlankKinematics& k, double pinion_speed, double gear_speed) {
-  return flank_motion_of(k, pinion_speed, gear_speed);
-}
+/// Velocities and lever arms of a flank pair (core/gear/flank_motion-inl.h).
+FlankMotion flank_motion(const FlankKinematics& flank, double pinion_speed, double gear_speed);
 
 /// A gear set packed for evaluation. Immutable; safe for concurrent use; evaluation allocates
 /// nothing. Tables are linear in mesh phase between their samples, shares clipped at zero and

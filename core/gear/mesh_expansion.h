@@ -41,9 +41,12 @@ struct MeshExpansion {
 
   /// d function/dx at a distance x from the angle.
   double slope_at(Function function, double x) const {
-    double out = 0;
-    for (int k = kTerms - 1; k > 0; --k) out = out * x + k * term[k][function];
-    return out;
+    const double x2 = x * x, x4 = x2 * x2;
+    const auto at = [&](int power) { return (power + 1) * term[power + 1][function]; };
+    const auto four = [&](int power) {
+      return (at(power) + at(power + 1) * x) + (at(power + 2) + at(power + 3) * x) * x2;
+    };
+    return four(0) + (four(4) + (at(8) + at(9) * x + at(10) * x2) * x4) * x4;
   }
 };
 

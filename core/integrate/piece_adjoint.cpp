@@ -7,6 +7,7 @@
 // After foreach_target.h.
 #include <hwy/highway.h>
 
+#include "core/driveline/motion-inl.h"
 #include "core/numerics/dispatch.h"
 #include "core/numerics/row-inl.h"
 // NOLINTEND(bugprone-suspicious-include,misc-redundant-expression)
@@ -14,16 +15,16 @@
 #include <cstddef>
 #include <utility>
 
-#include "core/driveline/gear_pair_system.h"
 #include "core/integrate/piece_adjoint.h"
+#include "core/integrate/runge_kutta.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tribodyn {
 namespace HWY_NAMESPACE {
 namespace {
 
-constexpr int kRates = 8;  // time and the seven of the section
-constexpr int kArms = 4;   // of pinion and gear at the middle, then at the end
+constexpr int kRates = kMotionStates;
+constexpr int kArms = 4;  // of pinion and gear at the middle, then at the end
 
 /// Derivatives of the figures by what the rates of one instant depend on.
 template <int kSize>
@@ -34,7 +35,7 @@ struct RatesAdjoint {
 
 /// From those by the rates themselves.
 template <int kSize>
-HWY_INLINE void transpose_rates(const SensitivityConstants& c, const StageSlopes& at,
+HWY_INLINE void transpose_rates(const MotionConstants& c, const StageSlopes& at,
                                 const Row<kSize>* rate, RatesAdjoint<kSize>& out) {
   using R = Row<kSize>;
   const R pinion = (at.time * c.per_pinion_inertia) * rate[kPinionSpeed];
@@ -75,55 +76,22 @@ HWY_INLINE void transpose_rates(const SensitivityConstants& c, const StageSlopes
   out.wheel_torque = -1.0 * wheel;
 }
 
-/// Derivatives of the rates from those of the states and of both friction arms.
-template <int kSize>
-HWY_INLINE void rates_of(const SensitivityConstants& c, const StageSlopes& at, const Row<kSize>* s,
-                         const Row<kSize>& pinion_arm, const Row<kSize>& gear_arm, Row<kSize>* ds) {
-  using R = Row<kSize>;
-  const R force = fused(at.force_by_approach, s[kMeshApproach],
-                        fused(at.damping * at.relative_radius, s[kPinionSpeed],
-                              (-at.damping * at.gear_radius) * s[kGearSpeed]));
-  const R pinion_twisting = s[kPinionShaftSpeed] - s[kPinionSpeed];
-  const R gear_twisting = s[kGearSpeed] - s[kWheelSpeed];
-  const R pinion_shaft = fused(c.pinion_shaft_stiffness, s[kPinionShaftTwist],
-                               c.pinion_shaft_damping * pinion_twisting);
-  const R gear_shaft =
-      fused(c.gear_shaft_stiffness, s[kGearShaftTwist], c.gear_shaft_damping * gear_twisting);
-  const R pinion =
-      fused(at.load, pinion_arm,
-            fused(at.pinion_arm, force,
-                  fused(at.pinion_torque_by_approach, s[kMeshApproach], pinion_shaft)));
-  const R gear =
-      fused(at.load, gear_arm,
-            fused(at.gear_arm, force,
-                  fused(at.gear_torque_by_approach, s[kMeshApproach], -1.0 * gear_shaft)));
-  ds[kTime] = R(0);
-  ds[kPinionShaftTwist] = pinion_twisting;
-  ds[kMeshApproach] = fused(c.pinion_radius, s[kPinionSpeed], -c.gear_radius * s[kGearSpeed]);
-  ds[kGearShaftTwist] = gear_twisting;
-  ds[kPinionShaftSpeed] = -c.per_pinion_shaft_inertia * pinion_shaft;
-  ds[kPinionSpeed] = c.per_pinion_inertia * pinion;
-  ds[kGearSpeed] = c.per_gear_inertia * gear;
-  ds[kWheelSpeed] = c.per_wheel_inertia * gear_shaft;
-  const R slower = -at.per_speed * s[kPinionSpeed];
-  for (int i = 0; i < kRates; ++i) ds[i] = fused(at.rate[i], slower, at.time * ds[i]);
-}
-
-constexpr double kNode[5] = {0, 0.5, 0.5, 1, 0};
-constexpr double kWeight[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
-
 /// The end of the step by its arms at the middle and at the end.
-HWY_INLINE void step_by_arms(const SensitivityConstants& c, const PieceSlopes& piece,
-                             Row<kArms>* end) {
+HWY_INLINE void step_by_arms(const MotionConstants& c, const PieceSlopes& piece, Row<kArms>* end) {
   const double h = piece.length;
   const double unit[2 * kArms - 1] = {0, 0, 0, 1, 0, 0, 0};
   const auto arm = [&](int n) HWY_ATTR { return load_row<kArms>(unit + 3 - n); };
   Row<kArms> s[kRates], ds[kRates];
   for (int i = 0; i < kRates; ++i) end[i] = ds[i] = Row<kArms>(0);
   for (int n = 1; n < 4; ++n) {
-    for (int i = 0; i < kRates; ++i) s[i] = (kNode[n] * h) * ds[i];
-    rates_of<kArms>(c, *piece.stages[n], s, n < 3 ? arm(0) : arm(2), n < 3 ? arm(1) : arm(3), ds);
-    for (int i = 0; i < kRates; ++i) end[i] = fused(kWeight[n] * h, ds[i], end[i]);
+    const StageSlopes& at = *piece.stages[n];
+    for (int i = 0; i < kRates; ++i) s[i] = (kRungeKuttaNode[n] * h) * ds[i];
+    linear_motion(c, at, s, ds);
+    ds[kPinionSpeed] =
+        fused(c.per_pinion_inertia * at.load, n < 3 ? arm(0) : arm(2), ds[kPinionSpeed]);
+    ds[kGearSpeed] = fused(c.per_gear_inertia * at.load, n < 3 ? arm(1) : arm(3), ds[kGearSpeed]);
+    by_phase(at, s, ds);
+    for (int i = 0; i < kRates; ++i) end[i] = fused(kRungeKuttaWeight[n] * h, ds[i], end[i]);
   }
 }
 
@@ -144,7 +112,7 @@ HWY_INLINE void add_arms(const std::array<ArmSlopes, 2>& arms, const StageSlopes
 /// What rows by the state at the middle are by the state at the end: the cubic, and through the
 /// arms there.
 template <int kSize>
-HWY_INLINE void add_middle_by_end(const SensitivityConstants& c, const PieceSlopes& piece,
+HWY_INLINE void add_middle_by_end(const MotionConstants& c, const PieceSlopes& piece,
                                   const Row<kSize>* middle, Row<kSize>* end) {
   RatesAdjoint<kSize> by;
   transpose_rates(c, *piece.parts[2], middle, by);
@@ -178,7 +146,7 @@ HWY_INLINE Figures load_figures(const AdjointRow& from) {
 
 }  // namespace
 
-void back_in_rows(const SensitivityConstants& c, const PieceSlopes& piece,
+void back_in_rows(const MotionConstants& c, const PieceSlopes& piece,
                   const std::array<StateAdjoint, 3>* direct, StateAdjoint& state,
                   PieceAdjoint& out) {
   // dX_1 = S + Q (arms at middle and end), these arms = N dX_1 + ...: with rows x by X_1,
@@ -237,8 +205,8 @@ void back_in_rows(const SensitivityConstants& c, const PieceSlopes& piece,
   for (int i = 0; i < kRates; ++i) sum[i] = x[i];
   for (int stage = 3; stage >= 0; --stage) {
     for (int i = 0; i < kRates; ++i) {
-      rate[i] = (kWeight[stage] * h) * x[i];
-      if (stage < 3) rate[i] = fused(kNode[stage + 1] * h, by.state[i], rate[i]);
+      rate[i] = (kRungeKuttaWeight[stage] * h) * x[i];
+      if (stage < 3) rate[i] = fused(kRungeKuttaNode[stage + 1] * h, by.state[i], rate[i]);
     }
     transpose_rates(c, *piece.stages[stage], rate, by);
     for (int i = 0; i < kRates; ++i) sum[i] = sum[i] + by.state[i];
@@ -311,7 +279,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tribodyn {
 
-void pass_back(InstructionSet instruction_set, const SensitivityConstants& constants,
+void pass_back(InstructionSet instruction_set, const MotionConstants& constants,
                const PieceSlopes& piece, const std::array<StateAdjoint, 3>* direct,
                StateAdjoint& state, PieceAdjoint& out) {
   TRIBODYN_RETURN_WITH(instruction_set, back_in_rows, constants, piece, direct, state, out)

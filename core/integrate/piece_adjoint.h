@@ -2,7 +2,8 @@
 
 #include <array>
 
-#include "core/integrate/step_sensitivity.h"
+#include "core/driveline/motion.h"
+#include "core/numerics/instruction_set.h"
 
 namespace tribodyn {
 
@@ -19,17 +20,9 @@ using AdjointRow = std::array<double, kAdjointLanes>;
 /// Derivatives of the figures by time and the seven states, in the order of MarchComponent.
 using StateAdjoint = std::array<AdjointRow, 8>;
 
-/// What the rates at one instant depend on: as SensitivityStage, with what the mesh approach does
-/// to the contact radius of the gear. Exact.
-struct StageSlopes {
-  double relative_radius, gear_radius;  ///< R_p - e', R_g [m]
-  double force_by_approach;             ///< of the mesh force [N/m]
-  double damping;                       ///< of the mesh force [N s/m]
-  double pinion_arm, gear_arm;          ///< what a mesh force turns, friction included [m]
-  double pinion_torque_by_approach, gear_torque_by_approach;  ///< besides the mesh force's [N]
-  double load;                                                ///< what friction arms act on [N]
-  double time, per_speed;                                     ///< of a mesh cycle [s]; 1/speed
-  std::array<double, 8> rate;                                 ///< of time and states by phase
+/// What the rates at one instant depend on.
+struct StageSlopes : MotionSlopes {
+  double load;  ///< what friction arms act on [N]
 };
 
 /// Derivatives of a friction arm (torque over load) by mesh force, speeds of pinion and gear.
@@ -53,7 +46,7 @@ struct PieceAdjoint {
 
 /// Takes `state` from the end of a piece to its start. `direct`: derivatives by the states at
 /// start, middle and end of what the piece itself adds to the figures; null: nothing.
-void pass_back(InstructionSet instruction_set, const SensitivityConstants& constants,
+void pass_back(InstructionSet instruction_set, const MotionConstants& constants,
                const PieceSlopes& piece, const std::array<StateAdjoint, 3>* direct,
                StateAdjoint& state, PieceAdjoint& out);
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/integrate/runge_kutta.h"
 #include "core/numerics/bracketed_root.h"
 
 namespace tribodyn {
@@ -18,23 +19,6 @@ double inside_cycle(double phase) { return phase - std::floor(phase); }
 
 }  // namespace
 
-SensitivityConstants driveline_constants(const GearPairSystem& system) {
-  const DrivelineDynamics& d = system.dynamics();
-  const MeshData& mesh = system.mesh();
-  SensitivityConstants c{};
-  c.per_pinion_inertia = 1 / d.pinion_inertia;
-  c.per_gear_inertia = 1 / d.gear_inertia;
-  c.pinion_radius = mesh.mean_pinion_contact_radius();
-  c.gear_radius = mesh.mean_gear_contact_radius();
-  c.pinion_shaft_stiffness = d.pinion_shaft_stiffness;
-  c.pinion_shaft_damping = d.pinion_shaft_damping;
-  c.gear_shaft_stiffness = d.gear_shaft_stiffness;
-  c.gear_shaft_damping = d.gear_shaft_damping;
-  c.per_pinion_shaft_inertia = 1 / d.pinion_shaft_inertia;
-  c.per_wheel_inertia = 1 / d.wheel_inertia;
-  return c;
-}
-
 Rk4WithEvents::Rk4WithEvents(const GearPairSystem& system, const MarchScales& scales,
                              const MeshGrid& grid, int period, bool solve_wheel_torque,
                              double event_tolerance, InstructionSet instruction_set)
@@ -43,48 +27,12 @@ Rk4WithEvents::Rk4WithEvents(const GearPairSystem& system, const MarchScales& sc
       grid_(grid),
       period_(period),
       event_tolerance_(event_tolerance),
-      instruction_set_(instruction_set),
-      constants_(driveline_constants(system)) {
-  SensitivityConstants& c = constants_;
-  (solve_wheel_torque ? c.wheel_per_torque : c.pinion_shaft_per_torque) =
-      solve_wheel_torque ? -c.per_wheel_inertia : c.per_pinion_shaft_inertia;
-}
-
-SensitivityStage Rk4WithEvents::sensitivity_stage(const MarchState& y, const Mechanics& at,
-                                                  const FrictionArms& friction,
-                                                  const Rates& rate) const {
-  const MeshFunctions& m = at.mesh;
-  const ContactRegime r = regime_;
-  const double load_by_force = r.load(at.mesh_force) > 0 ? r.side : 0;
-  SensitivityStage out;
-  out.relative_radius = m.pinion_contact_radius - m.static_transmission_error_slope;
-  out.gear_radius = m.gear_contact_radius;
-  out.stiffness = r.side == 0 ? 0 : m.mesh_stiffness;
-  out.damping = r.side == 0 && system_.options().damping_in_contact_only
-                    ? 0
-                    : system_.dynamics().mesh_damping;
-  out.pinion_arm = load_by_force * friction.pinion - m.pinion_contact_radius;
-  out.gear_arm = load_by_force * friction.gear + m.gear_contact_radius;
-  out.torque_per_approach = 0;
-  if (system_.options().energy_consistent) {
-    out.pinion_arm += m.static_transmission_error_slope;
-    if (r.side != 0) out.torque_per_approach = -m.mesh_stiffness_slope * at.deflection;
+      instruction_set_(instruction_set) {
+  if (solve_wheel_torque) {
+    by_torque_.wheel = -system.constants().per_wheel_inertia;
+  } else {
+    by_torque_.pinion_shaft = system.constants().per_pinion_shaft_inertia;
   }
-  out.time = rate[kTime];
-  out.per_speed = 1 / y[kPinionSpeed];
-  out.rate = rate;
-  return out;
-}
-
-Rk4WithEvents::Rates Rk4WithEvents::rates(const FrictionArms& friction, const MeshPhase& phase,
-                                          const MarchState& y, Mechanics& at) const {
-  system_.mechanics(phase, regime_, y.data(), at);
-  const double load = regime_.load(at.mesh_force);
-  at.pinion_friction_torque = friction.pinion * load;
-  at.gear_friction_torque = friction.gear * load;
-  Rates out{};
-  system_.motion(y.data(), at, torques_, out.data());
-  return out;
 }
 
 void Rk4WithEvents::change_regime(int event, const FrictionArms& friction, const MeshPhase& phase,
@@ -95,11 +43,12 @@ void Rk4WithEvents::change_regime(int event, const FrictionArms& friction, const
     return;
   }
   Mechanics at;
-  const Rates before = rates(friction, phase, y, at);
+  Rates before, after;
+  system_.motion(phase, regime_, y.data(), friction, torques_, at, before.data());
   regime_ = next;
   const double error_slope = at.transmission_velocity * before[kTime];  // dx/dphase
   if (error_slope == 0) return;
-  const Rates after = rates(friction, phase, y, at);
+  system_.motion(phase, regime_, y.data(), friction, torques_, at, after.data());
   evaluations_ += 2;
   // dx/d(mesh approach) = R_g/R_g0 (eq 6); x depends on no other state.
   const double per_approach =
@@ -112,17 +61,19 @@ void Rk4WithEvents::step(FrozenFriction& friction, const Span& span, const March
                          MarchState& to) {
   const MeshPhase* const phases[4] = {span.start, span.middle, span.middle, span.end};
   const double h = span.length;
-  constexpr double kNode[4] = {0, 0.5, 0.5, 1}, kWeight[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
   MarchState stage = y;
   Rates rate{};
   to = y;
   for (int i = 0; i < 4; ++i) {
-    for (int j = 0; j < kStates && i > 0; ++j) stage[j] = y[j] + kNode[i] * h * rate[j];
-    const FrictionArms here = friction.at(span.phase + kNode[i] * h);
+    for (int j = 0; j < kStates && i > 0; ++j) stage[j] = y[j] + kRungeKuttaNode[i] * h * rate[j];
+    const FrictionArms here = friction.at(span.phase + kRungeKuttaNode[i] * h);
     Mechanics at;
-    rate = rates(here, *phases[i], stage, at);
-    for (int j = 0; j < kStates; ++j) to[j] += kWeight[i] * h * rate[j];
-    if (store_stages_) stages_[i] = sensitivity_stage(stage, at, here, rate);
+    system_.motion(*phases[i], regime_, stage.data(), here, torques_, at, rate.data());
+    for (int j = 0; j < kStates; ++j) to[j] += kRungeKuttaWeight[i] * h * rate[j];
+    if (store_stages_) {
+      stages_[i].rate = rate;
+      system_.slopes(*phases[i], regime_, stage.data(), at, here, stages_[i]);
+    }
     if (i == 0) first_rate_ = rate;
   }
   last_rate_ = rate;
@@ -315,7 +266,8 @@ bool Rk4WithEvents::run(const Torques& torques, FrozenFriction& friction, bool b
         pieces->push_back({phase, h, on_grid ? node : -1, regime_, y, half, to});
       }
       y = to;
-      if (s != nullptr) advance_sensitivity(instruction_set_, constants_, stages_, h, *s);
+      if (s != nullptr)
+        advance_sensitivity(instruction_set_, system_.constants(), by_torque_, stages_, h, *s);
       phase += h;
       if (happens) {
         at_start = at_end;

@@ -12,9 +12,6 @@
 
 namespace tribodyn {
 
-/// What variational equations need of a driveline, without an unknown torque.
-SensitivityConstants driveline_constants(const GearPairSystem& system);
-
 /// Classical Runge-Kutta steps of even length over mesh phase, under frozen friction. Steps end on
 /// contact loss, regain and load events, which are located on true steps: by secants from the
 /// root on the cubic through both ends, or else inside a bracket.
@@ -54,11 +51,6 @@ class Rk4WithEvents {
     double phase, length;  ///< [cycles]
     const MeshPhase *start, *middle, *end;
   };
-  SensitivityStage sensitivity_stage(const MarchState& y, const Mechanics& at,
-                                     const FrictionArms& friction, const Rates& rate) const;
-  /// d state / d phase at a mesh phase; `at`: the mechanics there.
-  Rates rates(const FrictionArms& friction, const MeshPhase& phase, const MarchState& y,
-              Mechanics& at) const;
   void step(FrozenFriction& friction, const Span& span, const MarchState& y, MarchState& to);
   /// Into the regime after event 0 or 1, with the derivatives unless they are null.
   void change_regime(int event, const FrictionArms& friction, const MeshPhase& phase,
@@ -75,14 +67,14 @@ class Rk4WithEvents {
   int period_;
   double event_tolerance_;
   InstructionSet instruction_set_;
-  SensitivityConstants constants_;
+  TorqueSlopes by_torque_;
   long evaluations_ = 0, taken_ = 0, events_ = 0;
   Torques torques_;
   ContactRegime regime_;  // at the phase reached
   // Of the last step.
   Rates first_rate_{}, last_rate_{};
   bool store_stages_ = false;
-  std::array<SensitivityStage, 4> stages_;
+  std::array<MotionSlopes, 4> stages_;
 };
 
 }  // namespace tribodyn

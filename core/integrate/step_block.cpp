@@ -7,6 +7,8 @@
 // After foreach_target.h.
 #include <hwy/highway.h>
 
+#include "core/driveline/motion-inl.h"
+#include "core/gear/flank_motion-inl.h"
 #include "core/numerics/dispatch.h"
 #include "core/numerics/pack-inl.h"
 #include "core/numerics/row-inl.h"
@@ -14,6 +16,7 @@
 
 #include <algorithm>
 
+#include "core/integrate/runge_kutta.h"
 #include "core/integrate/step_block.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -28,29 +31,11 @@ constexpr int kTorque = kStates - 1;  // column of the unknown torque
 /// What all lanes share.
 struct Constants {
   const StepBlock& block;
-  const DrivelineDynamics& dynamics = block.system.dynamics();
-  const MeshData& mesh = block.system.mesh();
-  double pinion_shaft_inertia = 1 / dynamics.pinion_shaft_inertia;  // these four inverse
-  double pinion_inertia = 1 / dynamics.pinion_inertia;
-  double gear_inertia = 1 / dynamics.gear_inertia;
-  double wheel_inertia = 1 / dynamics.wheel_inertia;
-  double pinion_shaft_stiffness = dynamics.pinion_shaft_stiffness;
-  double pinion_shaft_damping = dynamics.pinion_shaft_damping;
-  double gear_shaft_stiffness = dynamics.gear_shaft_stiffness;
-  double gear_shaft_damping = dynamics.gear_shaft_damping;
-  double mesh_damping = dynamics.mesh_damping;
-  double pinion_torque = block.torques.pinion;
-  double wheel_torque = block.torques.wheel;
-  double pinion_radius = mesh.mean_pinion_contact_radius();
-  double gear_radius = mesh.mean_gear_contact_radius();
-  double lag_per_approach = mesh.gear_teeth() / gear_radius;
-  // From x to the deflection of the touching flanks.
-  double backlash = (1 - block.side) * dynamics.half_backlash;
-  double cycle_angle = block.system.cycle_angle();
+  const MotionConstants& motion = block.system.constants();
+  double lag_per_approach = block.system.mesh().gear_teeth() / motion.gear_radius;
   double reach = block.grid.series_reach();
   double side = block.side;
   bool energy_consistent = block.system.options().energy_consistent;
-  bool solve_wheel_torque = block.solve_wheel_torque;
 };
 
 /// A phase in the lanes from `lane` on.
@@ -62,12 +47,6 @@ struct Phase {
   HWY_INLINE Pack torque(FrictionRow row) const { return load_any((*friction)[row] + lane); }
 };
 
-/// As Mechanics, but for half the backlash that the transmission error lacks.
-struct PackMechanics {
-  Pack pinion_radius, gear_radius, relative_radius;  // the last R_p - e'
-  Pack stiffness, transmission_error, velocity, deflection, force;
-};
-
 /// Two series by Estrin's way: see MeshExpansion::at.
 HWY_INLINE Pack series(const Phase& phase, int function, Pack x, Pack x2, Pack x4) {
   const auto term = [&](int k) HWY_ATTR { return phase[kSeriesRow + 2 * k + function]; };
@@ -77,128 +56,99 @@ HWY_INLINE Pack series(const Phase& phase, int function, Pack x, Pack x2, Pack x
   return fused(fused(four(8), x4, four(4)), x4, four(0));
 }
 
-/// Of x and the mesh force. Clears `good` where the series do not reach.
-HWY_INLINE void mechanics(const Constants& c, const Phase& phase, const Pack* y, PackMechanics& m,
-                          Mask& good) {
-  const Pack x = less_product(c.lag_per_approach, y[kMeshApproach], phase[kOffsetRow]);
+/// dR_g/dx by the derivative of its series.
+HWY_INLINE Pack gear_radius_slope(const Phase& phase, Pack x) {
+  const Pack x2 = x * x, x4 = x2 * x2;
+  const auto term = [&](int power)
+                        HWY_ATTR { return (power + 1) * phase[kSeriesRow + 2 * (power + 1)]; };
+  const auto four = [&](int k) HWY_ATTR {
+    return fused(fused(term(k + 3), x, term(k + 2)), x2, fused(term(k + 1), x, term(k)));
+  };
+  const Pack last = fused(term(10), x2, fused(term(9), x, term(8)));
+  return fused(fused(last, x4, four(4)), x4, four(0));
+}
+
+/// Where the gear is in its series: from the angle that they are around [rad].
+HWY_INLINE Pack series_place(const Constants& c, const Phase& phase, const Pack* y) {
+  return less_product(c.lag_per_approach, y[kMeshApproach], phase[kOffsetRow]);
+}
+
+/// The mesh functions and the mesh force. Clears `good` where the series do not reach.
+HWY_INLINE void mechanics(const Constants& c, const Phase& phase, const Pack* y,
+                          MechanicsOf<Pack>& at, Mask& good) {
+  const Pack x = series_place(c, phase, y);
   good = good & (size(x) <= c.reach);
   const Pack x2 = x * x, x4 = x2 * x2;
-  m.pinion_radius = phase[kPinionRadiusRow];
-  m.gear_radius = series(phase, 0, x, x2, x4);
-  m.relative_radius = m.pinion_radius - phase[kErrorSlopeRow];
-  m.stiffness = phase[kStiffnessRow];
-  // x - b
-  const Pack beyond = y[kMeshApproach] + series(phase, 1, x, x2, x4) - phase[kErrorRow];
-  m.deflection = beyond + c.backlash;
-  m.transmission_error = beyond;
-  m.velocity = less_product(m.gear_radius, y[kGearSpeed], m.relative_radius * y[kPinionSpeed]);
-  m.force = fused(m.stiffness, m.deflection, c.mesh_damping * m.velocity);
+  MeshFunctionsOf<Pack>& m = at.mesh;
+  m.pinion_contact_radius = phase[kPinionRadiusRow];
+  m.gear_contact_radius = series(phase, 0, x, x2, x4);
+  m.radius_integral = series(phase, 1, x, x2, x4);
+  m.mesh_stiffness = phase[kStiffnessRow];
+  m.mesh_stiffness_slope = phase[kStiffnessSlopeRow];
+  m.static_transmission_error = phase[kErrorRow];
+  m.static_transmission_error_slope = phase[kErrorSlopeRow];
+  set_mesh_force(c.motion, c.side, y, at);
 }
 
-/// Eqs 1-4 by phase.
-HWY_INLINE void rates(const Constants& c, const Phase& phase, const PackMechanics& m, const Pack* y,
+HWY_INLINE void rates(const Constants& c, const Phase& phase, const Pack* y, MechanicsOf<Pack>& at,
                       Pack* dy) {
-  const Pack pressing = greatest(c.side * m.force, 0);
-  const Pack pinion_shaft =
-      fused(c.pinion_shaft_stiffness, y[kPinionShaftTwist],
-            c.pinion_shaft_damping * (y[kPinionShaftSpeed] - y[kPinionSpeed]));
-  const Pack gear_shaft = fused(c.gear_shaft_stiffness, y[kGearShaftTwist],
-                                c.gear_shaft_damping * (y[kGearSpeed] - y[kWheelSpeed]));
-  Pack pinion = fused(phase.torque(kPinionFrictionRow), pressing,
-                      less_product(m.pinion_radius, m.force, pinion_shaft));
-  if (c.energy_consistent) {
-    pinion = fused(m.force, phase[kErrorSlopeRow], pinion);
-    pinion = less_product(0.5 * phase[kStiffnessSlopeRow], square(m.deflection), pinion);
-  }
-  const Pack gear =
-      fused(phase.torque(kGearFrictionRow), pressing, fused(m.gear_radius, m.force, -gear_shaft));
-  const Pack time = c.cycle_angle / y[kPinionSpeed];
-  dy[kTime] = time;
-  dy[kMeshApproach] =
-      time * less_product(c.gear_radius, y[kGearSpeed], c.pinion_radius * y[kPinionSpeed]);
-  dy[kPinionSpeed] = time * (pinion * c.pinion_inertia);
-  dy[kGearSpeed] = time * (gear * c.gear_inertia);
-  dy[kPinionShaftTwist] = time * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
-  dy[kGearShaftTwist] = time * (y[kGearSpeed] - y[kWheelSpeed]);
-  dy[kPinionShaftSpeed] = time * ((c.pinion_torque - pinion_shaft) * c.pinion_shaft_inertia);
-  dy[kWheelSpeed] = time * ((gear_shaft - c.wheel_torque) * c.wheel_inertia);
+  const Pack load = greatest(c.side * at.mesh_force, 0);
+  at.pinion_friction_torque = phase.torque(kPinionFrictionRow) * load;
+  at.gear_friction_torque = phase.torque(kGearFrictionRow) * load;
+  const ShaftTorques<Pack> shaft = shaft_torques(c.motion, y);
+  at.pinion_shaft_torque = shaft.pinion;
+  at.gear_shaft_torque = shaft.gear;
+  const Torques& torques = c.block.torques;
+  motion(c.motion, c.energy_consistent, y, at, torques.pinion, torques.wheel, dy);
 }
 
-/// Of one Runge-Kutta stage, what its derivatives need.
-struct Stage {
-  Pack relative_radius, gear_radius, stiffness, time, per_speed, deflection;
-  Pack pinion_arm, gear_arm;  // of the force: d torque/d force
-  Pack stiffness_slope;
-  Pack rate[kStates];
-};
-
-HWY_INLINE void store_stage(const Constants& c, const Phase& phase, const PackMechanics& m,
-                            const Pack* y, const Pack* dy, Stage& out) {
-  const Pack by_force = where(c.side * m.force > 0, c.side);
-  out.relative_radius = m.relative_radius;
-  out.gear_radius = m.gear_radius;
-  out.stiffness = m.stiffness;
+/// As GearPairSystem::slopes().
+HWY_INLINE void set_slopes(const Constants& c, const Phase& phase, const MechanicsOf<Pack>& at,
+                           const Pack* y, const Pack* dy, MotionSlopesOf<Pack>& out) {
+  const MeshFunctionsOf<Pack>& m = at.mesh;
+  const Pack load_by_force = where(c.side * at.mesh_force > 0, c.side);
+  const Pack error_by_approach = m.gear_contact_radius * (1 / c.motion.gear_radius);
+  const Pack radius_by_approach =
+      -c.lag_per_approach * gear_radius_slope(phase, series_place(c, phase, y));
+  out.relative_radius = m.pinion_contact_radius - m.static_transmission_error_slope;
+  out.gear_radius = m.gear_contact_radius;
+  out.damping = c.motion.mesh_damping;
+  out.force_by_approach = less_product(c.motion.mesh_damping * radius_by_approach, y[kGearSpeed],
+                                       m.mesh_stiffness * error_by_approach);
+  out.pinion_arm = fused(load_by_force, phase.torque(kPinionFrictionRow), -m.pinion_contact_radius);
+  out.gear_arm = fused(load_by_force, phase.torque(kGearFrictionRow), m.gear_contact_radius);
+  out.pinion_torque_by_approach = 0;
+  out.gear_torque_by_approach = at.mesh_force * radius_by_approach;
+  if (c.energy_consistent) {
+    out.pinion_arm = out.pinion_arm + m.static_transmission_error_slope;
+    out.pinion_torque_by_approach = -m.mesh_stiffness_slope * at.deflection * error_by_approach;
+  }
   out.time = dy[kTime];
   out.per_speed = 1 / y[kPinionSpeed];
-  out.deflection = m.deflection;
-  out.pinion_arm = fused(by_force, phase.torque(kPinionFrictionRow), -m.pinion_radius);
-  out.gear_arm = fused(by_force, phase.torque(kGearFrictionRow), m.gear_radius);
-  if (c.energy_consistent) {
-    out.pinion_arm = out.pinion_arm + phase[kErrorSlopeRow];
-    out.stiffness_slope = phase[kStiffnessSlopeRow];
-  }
   for (int i = 0; i < kStates; ++i) out.rate[i] = dy[i];
 }
 
-/// The rates of the variational equations, of one column.
-HWY_INLINE void derivative_rates(const Constants& c, const Stage& at, int column, const Pack* s,
-                                 Pack* ds) {
-  const Pack velocity =
-      less_product(at.gear_radius, s[kGearSpeed], at.relative_radius * s[kPinionSpeed]);
-  const Pack force = fused(at.stiffness, s[kMeshApproach], c.mesh_damping * velocity);
-  const Pack pinion_shaft =
-      fused(c.pinion_shaft_stiffness, s[kPinionShaftTwist],
-            c.pinion_shaft_damping * (s[kPinionShaftSpeed] - s[kPinionSpeed]));
-  const Pack gear_shaft = fused(c.gear_shaft_stiffness, s[kGearShaftTwist],
-                                c.gear_shaft_damping * (s[kGearSpeed] - s[kWheelSpeed]));
-  Pack pinion = fused(at.pinion_arm, force, pinion_shaft);
-  if (c.energy_consistent) {
-    pinion = less_product(at.stiffness_slope * at.deflection, s[kMeshApproach], pinion);
-  }
-  const Pack gear = fused(at.gear_arm, force, -gear_shaft);
-  ds[kTime] = 0;
-  ds[kMeshApproach] = less_product(c.gear_radius, s[kGearSpeed], c.pinion_radius * s[kPinionSpeed]);
-  ds[kPinionSpeed] = c.pinion_inertia * pinion;
-  ds[kGearSpeed] = c.gear_inertia * gear;
-  ds[kPinionShaftTwist] = s[kPinionShaftSpeed] - s[kPinionSpeed];
-  ds[kGearShaftTwist] = s[kGearSpeed] - s[kWheelSpeed];
-  ds[kPinionShaftSpeed] = -c.pinion_shaft_inertia * pinion_shaft;
-  ds[kWheelSpeed] = c.wheel_inertia * gear_shaft;
-  if (column == kTorque && c.solve_wheel_torque) {
-    ds[kWheelSpeed] = ds[kWheelSpeed] - c.wheel_inertia;
-  } else if (column == kTorque) {
-    ds[kPinionShaftSpeed] = ds[kPinionShaftSpeed] + c.pinion_shaft_inertia;
-  }
-  const Pack faster = s[kPinionSpeed] * at.per_speed;
-  for (int i = 0; i < kStates; ++i) {
-    ds[i] = less_product(at.rate[i], faster, at.time * ds[i]);
-  }
-}
-
-constexpr double kNode[4] = {0, 0.5, 0.5, 1};
-constexpr double kWeight[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
-
-void differentiate(const Constants& c, const Stage* stages, double h, int lane, Columns& out) {
+void differentiate(const Constants& c, const MotionSlopesOf<Pack>* stages, double h, int lane,
+                   Columns& out) {
   for (int column = 0; column < kStates; ++column) {
     Pack s[kStates], ds[kStates], sum[kStates];
-    for (int i = 0; i < kStates; ++i) sum[i] = i == column + 1 ? 1 : 0;
+    for (int i = 0; i < kStates; ++i) {
+      sum[i] = i == column + 1 ? 1 : 0;
+      ds[i] = 0;
+    }
     for (int n = 0; n < 4; ++n) {
       for (int i = 0; i < kStates; ++i) {
         s[i] = i == column + 1 ? 1 : 0;
-        if (n > 0) s[i] = fused(kNode[n] * h, ds[i], s[i]);
+        if (n > 0) s[i] = fused(kRungeKuttaNode[n] * h, ds[i], s[i]);
       }
-      derivative_rates(c, stages[n], column, s, ds);
-      for (int i = 0; i < kStates; ++i) sum[i] = fused(kWeight[n] * h, ds[i], sum[i]);
+      linear_motion(c.motion, stages[n], s, ds);
+      if (column == kTorque && c.block.solve_wheel_torque) {
+        ds[kWheelSpeed] = ds[kWheelSpeed] - c.motion.per_wheel_inertia;
+      } else if (column == kTorque) {
+        ds[kPinionShaftSpeed] = ds[kPinionShaftSpeed] + c.motion.per_pinion_shaft_inertia;
+      }
+      by_phase(stages[n], s, ds);
+      for (int i = 0; i < kStates; ++i) sum[i] = fused(kRungeKuttaWeight[n] * h, ds[i], sum[i]);
     }
     for (int i = 0; i < kStates; ++i) store_any(sum[i], out[kStates * i + column] + lane);
   }
@@ -245,17 +195,17 @@ bool steps_in_lanes(const StepBlock& block, const CycleResponse& response, Colum
     for (int i = 1; i < kStates; ++i) {
       sum[i] = y[i] = load_any(response.start[i] + lane);
     }
-    Stage stages[4];
+    MotionSlopesOf<Pack> stages[4];
     Mask good = ~nowhere();
     for (int n = 0; n < 4; ++n) {
       for (int i = 0; i < kStates; ++i) {
-        stage[i] = n == 0 ? y[i] : fused(kNode[n] * h, rate[i], y[i]);
+        stage[i] = n == 0 ? y[i] : fused(kRungeKuttaNode[n] * h, rate[i], y[i]);
       }
-      PackMechanics m;
-      mechanics(c, *phases[n], stage, m, good);
-      rates(c, *phases[n], m, stage, rate);
-      if (derivatives != nullptr) store_stage(c, *phases[n], m, stage, rate, stages[n]);
-      for (int i = 0; i < kStates; ++i) sum[i] = fused(kWeight[n] * h, rate[i], sum[i]);
+      MechanicsOf<Pack> at;
+      mechanics(c, *phases[n], stage, at, good);
+      rates(c, *phases[n], stage, at, rate);
+      if (derivatives != nullptr) set_slopes(c, *phases[n], at, stage, rate, stages[n]);
+      for (int i = 0; i < kStates; ++i) sum[i] = fused(kRungeKuttaWeight[n] * h, rate[i], sum[i]);
     }
     for (int i = 0; i < kStates; ++i) {
       good = good & (size(sum[i]) < 1e100);
@@ -273,26 +223,25 @@ bool fill_lanes(const StepBlock& block, CycleResponse& response) {
   const MeshGrid::MeshColumns& mesh = block.grid.mesh_columns(block.side);
   const int steps = block.grid.steps();
   const double h = 1.0 / steps;
-  const double half_backlash = block.system.dynamics().half_backlash;
   Columns& rate = response.rate;
   bool all_good = true;
   const auto fill = [&](const Phase& phase, int lane, Columns& to, Pack* y, Mask good) HWY_ATTR {
-    PackMechanics m;
-    mechanics(c, phase, y, m, good);
-    store_any(m.force, to[kMeshForceRow] + lane);
-    store_any(m.transmission_error + half_backlash, to[kTransmissionErrorRow] + lane);
-    store_any(m.velocity, to[kTransmissionVelocityRow] + lane);
-    good = good & (size(m.force) < 1e100) & (y[kPinionSpeed] > 0);
+    MechanicsOf<Pack> at;
+    mechanics(c, phase, y, at, good);
+    store_any(at.mesh_force, to[kMeshForceRow] + lane);
+    store_any(at.transmission_error, to[kTransmissionErrorRow] + lane);
+    store_any(at.transmission_velocity, to[kTransmissionVelocityRow] + lane);
+    good = good & (size(at.mesh_force) < 1e100) & (y[kPinionSpeed] > 0);
     all_good = all_good && all(good | beyond(lane, steps + (&to == &response.start ? 1 : 0)));
-    return m;
+    return at;
   };
   Pack y[kStates];
   for (int lane = 0; lane <= steps; lane += pack_lanes()) {
     const Phase phase{mesh.starts, &block.friction.start, lane};
     for (int i = 0; i < kStates; ++i) y[i] = load_any(response.start[i] + lane);
-    const PackMechanics m = fill(phase, lane, response.start, y, ~nowhere());
+    MechanicsOf<Pack> at = fill(phase, lane, response.start, y, ~nowhere());
     Pack dy[kStates];
-    rates(c, phase, m, y, dy);
+    rates(c, phase, y, at, dy);
     for (int i = 0; i < kStates; ++i) store_any(dy[i], rate[i] + lane);
   }
   for (int lane = 0; lane < steps; lane += pack_lanes()) {
@@ -381,38 +330,35 @@ void gather_in_lanes(const StepBlock& block, const GridContacts& contacts,
     seen[kGatheredGearX][i] = at[kGearSpeed][node / 2];
   }
   const ModelOptions& options = block.system.options();
-  const double side = block.side;
   for (int i = 0; i < count; i += pack_lanes()) {
     const auto flank = [&](int row) HWY_ATTR { return load_any(contacts.kinematics[row] + i); };
     const auto put = [&](GatheredRow row, Pack value) HWY_ATTR { store_any(value, seen[row] + i); };
+    const FlankKinematicsOf<Pack> kinematics{
+        .load_share = flank(kLoadShareRow),
+        .radius_x = 0,  // with the geometries of the contacts
+        .radius_y = 0,
+        .pinion_velocity_x = flank(kPinionVelocityXRow),
+        .pinion_velocity_y = flank(kPinionVelocityYRow),
+        .gear_velocity_x = flank(kGearVelocityXRow),
+        .gear_velocity_y = flank(kGearVelocityYRow),
+        .contact_point_velocity_x = flank(kContactPointVelocityXRow),
+        .contact_point_velocity_y = flank(kContactPointVelocityYRow),
+        .pinion_friction_arm = flank(kPinionArmRow),
+        .gear_friction_arm = flank(kGearArmRow)};
     const Pack pinion_speed = load_any(seen[kGatheredPinionX] + i);
-    const Pack gear_speed = load_any(seen[kGatheredGearX] + i);
-    const Pack pinion_vx = flank(kPinionVelocityXRow), pinion_vy = flank(kPinionVelocityYRow);
-    const Pack gear_vx = flank(kGearVelocityXRow), gear_vy = flank(kGearVelocityYRow);
-    const Pack pinion_x = pinion_vx * pinion_speed, pinion_y = pinion_vy * pinion_speed;
-    const Pack gear_x = gear_vx * gear_speed, gear_y = gear_vy * gear_speed;
-    const Pack slide_x = pinion_x - gear_x, slide_y = pinion_y - gear_y;
-    const Pack sliding = root(fused(slide_x, slide_x, square(slide_y)));
+    FlankMotionOf<Pack> motion;
+    set_flank_motion(kinematics, pinion_speed, load_any(seen[kGatheredGearX] + i),
+                     options.tabulated_friction_arms, motion);
     put(kGatheredLoad,
-        flank(kLoadShareRow) * greatest(side * load_any(seen[kGatheredLoad] + i), 0));
-    put(kGatheredSlidingSpeed, sliding);
-    if (options.tabulated_friction_arms) {
-      put(kGatheredPinionArm, flank(kPinionArmRow));
-      put(kGatheredGearArm, flank(kGearArmRow));
-    } else {
-      const Pack per_speed = where(sliding > 0, 1 / sliding);
-      put(kGatheredPinionArm, -per_speed * fused(slide_x, pinion_vx, slide_y * pinion_vy));
-      put(kGatheredGearArm, per_speed * fused(slide_x, gear_vx, slide_y * gear_vy));
-    }
-    Pack drift_x = 0, drift_y = 0;
-    if (options.subtract_contact_point_motion) {
-      drift_x = flank(kContactPointVelocityXRow) * pinion_speed;
-      drift_y = flank(kContactPointVelocityYRow) * pinion_speed;
-    }
-    put(kGatheredPinionX, pinion_x - drift_x);
-    put(kGatheredPinionY, pinion_y - drift_y);
-    put(kGatheredGearX, gear_x - drift_x);
-    put(kGatheredGearY, gear_y - drift_y);
+        kinematics.load_share * greatest(block.side * load_any(seen[kGatheredLoad] + i), 0));
+    put(kGatheredSlidingSpeed, motion.sliding_speed);
+    put(kGatheredPinionArm, motion.pinion_friction_arm);
+    put(kGatheredGearArm, motion.gear_friction_arm);
+    if (options.subtract_contact_point_motion) subtract_drift(kinematics, pinion_speed, motion);
+    put(kGatheredPinionX, motion.pinion_x);
+    put(kGatheredPinionY, motion.pinion_y);
+    put(kGatheredGearX, motion.gear_x);
+    put(kGatheredGearY, motion.gear_y);
   }
 }
 

@@ -55,6 +55,12 @@ HWY_INLINE Row<kSize> operator-(const Row<kSize>& x, const Row<kSize>& y) {
   for (int k = 0; k < out.kParts; ++k) out.v[k] = hn::Sub(x.v[k], y.v[k]);
   return out;
 }
+template <int kSize>
+HWY_INLINE Row<kSize> operator-(const Row<kSize>& x) {
+  Row<kSize> out;
+  for (int k = 0; k < out.kParts; ++k) out.v[k] = hn::Neg(x.v[k]);
+  return out;
+}
 /// a x with a number a.
 template <int kSize>
 HWY_INLINE Row<kSize> operator*(double a, const Row<kSize>& x) {
@@ -63,12 +69,19 @@ HWY_INLINE Row<kSize> operator*(double a, const Row<kSize>& x) {
   for (int k = 0; k < out.kParts; ++k) out.v[k] = hn::Mul(factor, x.v[k]);
   return out;
 }
-/// a x + y with a number a, rounded once where the instructions allow.
+/// a x + y and y - a x with a number a, rounded once where the instructions allow.
 template <int kSize>
 HWY_INLINE Row<kSize> fused(double a, const Row<kSize>& x, const Row<kSize>& y) {
   Row<kSize> out;
   const auto factor = hn::Set(typename Row<kSize>::Tag(), a);
   for (int k = 0; k < out.kParts; ++k) out.v[k] = hn::MulAdd(factor, x.v[k], y.v[k]);
+  return out;
+}
+template <int kSize>
+HWY_INLINE Row<kSize> less_product(double a, const Row<kSize>& x, const Row<kSize>& y) {
+  Row<kSize> out;
+  const auto factor = hn::Set(typename Row<kSize>::Tag(), a);
+  for (int k = 0; k < out.kParts; ++k) out.v[k] = hn::NegMulAdd(factor, x.v[k], y.v[k]);
   return out;
 }
 

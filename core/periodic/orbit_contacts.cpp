@@ -3,19 +3,10 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "core/gear/flank_motion-inl.h"
 #include "core/numerics/dual-inl.h"
 
 namespace tribodyn {
-namespace HWY_NAMESPACE {
-
-/// What flank_motion_of() calls it.
-template <int kCount>
-Dual<double, kCount> sqrt(const Dual<double, kCount>& x) {
-  return root(x);
-}
-
-}  // namespace HWY_NAMESPACE
-
 namespace {
 
 using SpeedNumber = HWY_NAMESPACE::Dual<double, 2>;  // by the speeds of pinion and gear
@@ -96,22 +87,16 @@ bool OrbitContacts::see(const OrbitPiece& piece, int part, ContactsAt& out) {
     const FlankKinematics& flank = flanks[k];
     const double load = flank.load_share * out.load;
     if (!(load > 0)) continue;
-    FlankMotionOf<SpeedNumber> motion = flank_motion_of(
-        flank, SpeedNumber::variable(y[kPinionSpeed], 0), SpeedNumber::variable(y[kGearSpeed], 1));
+    const SpeedNumber pinion_speed = SpeedNumber::variable(y[kPinionSpeed], 0);
+    FlankMotionOf<SpeedNumber> motion;
+    HWY_NAMESPACE::set_flank_motion(flank, pinion_speed, SpeedNumber::variable(y[kGearSpeed], 1),
+                                    options.tabulated_friction_arms, motion);
     if (!(motion.sliding_speed > 0)) return false;
-    if (options.tabulated_friction_arms) {
-      motion.pinion_friction_arm = flank.pinion_friction_arm;
-      motion.gear_friction_arm = flank.gear_friction_arm;
-    }
-    SpeedNumber velocity[4] = {motion.pinion_x, motion.pinion_y, motion.gear_x, motion.gear_y};
     if (options.subtract_contact_point_motion) {
-      const SpeedNumber pinion_speed = SpeedNumber::variable(y[kPinionSpeed], 0);
-      for (int v = 0; v < 4; ++v) {
-        velocity[v] = velocity[v] - (v % 2 == 0 ? flank.contact_point_velocity_x
-                                                : flank.contact_point_velocity_y) *
-                                        pinion_speed;
-      }
+      HWY_NAMESPACE::subtract_drift(flank, pinion_speed, motion);
     }
+    const SpeedNumber velocity[4] = {motion.pinion_x, motion.pinion_y, motion.gear_x,
+                                     motion.gear_y};
     Contact contact;
     contact.load = load;
     contact.load_by_force = flank.load_share * piece.regime.side;

@@ -6,8 +6,9 @@
 #include <limits>
 #include <optional>
 
+#include "core/integrate/mesh_cycle_march.h"
 #include "core/integrate/piece_adjoint.h"
-#include "core/integrate/rk4_with_events.h"
+#include "core/integrate/runge_kutta.h"
 #include "core/periodic/leading_multiplier.h"
 #include "core/periodic/orbit_contacts.h"
 
@@ -43,7 +44,7 @@ class OrbitDifferentiator {
         scales_(march_scales(system_, orbit.torques, mean_speed_)),
         light_load_(kLightShare * scales_.torque / system_.mesh().mean_pinion_contact_radius()),
         instruction_set_(problem.contacts.instruction_set()),
-        constants_(driveline_constants(system_)),
+        constants_(system_.constants()),
         model_(problem.contacts.model()),
         contacts_(system_, grid_, problem.contacts, model_, orbit, light_load_) {}
 
@@ -122,44 +123,19 @@ class OrbitDifferentiator {
   void evaluate(const MeshPhase& phase, const ContactRegime& regime, const MarchState& y,
                 const FrictionArms& arms, DifferentiatedInstant& out) {
     Mechanics at;
-    system_.mechanics(phase, regime, y.data(), at);
     StageSlopes& s = out.slopes;
-    const MeshFunctions& m = at.mesh;
+    system_.motion(phase, regime, y.data(), arms, orbit_.torques, at, s.rate.data());
+    system_.slopes(phase, regime, y.data(), at, arms, s);
     s.load = regime.load(at.mesh_force);
-    at.pinion_friction_torque = arms.pinion * s.load;
-    at.gear_friction_torque = arms.gear * s.load;
-    system_.motion(y.data(), at, orbit_.torques, s.rate.data());
-    const bool gap = regime.side == 0;
-    const double load_by_force = s.load > 0 ? regime.side : 0;
-    const double radius_by_approach = system_.gear_radius_by_approach(phase, y[kMeshApproach]);
-    out.error_by_approach = m.gear_contact_radius / system_.mesh().mean_gear_contact_radius();
-    out.velocity_by_approach = -radius_by_approach * y[kGearSpeed];
-    s.relative_radius = m.pinion_contact_radius - m.static_transmission_error_slope;
-    s.gear_radius = m.gear_contact_radius;
-    s.damping =
-        gap && system_.options().damping_in_contact_only ? 0 : system_.dynamics().mesh_damping;
-    s.force_by_approach =
-        (gap ? 0 : m.mesh_stiffness * out.error_by_approach) + s.damping * out.velocity_by_approach;
-    s.pinion_arm = load_by_force * arms.pinion - m.pinion_contact_radius;
-    s.gear_arm = load_by_force * arms.gear + m.gear_contact_radius;
-    s.pinion_torque_by_approach = 0;
-    s.gear_torque_by_approach = at.mesh_force * radius_by_approach;
-    if (system_.options().energy_consistent) {
-      s.pinion_arm += m.static_transmission_error_slope;
-      if (!gap) {
-        s.pinion_torque_by_approach =
-            -m.mesh_stiffness_slope * at.deflection * out.error_by_approach;
-      }
-    }
-    s.time = s.rate[kTime];
-    s.per_speed = 1 / y[kPinionSpeed];
+    out.error_by_approach = at.mesh.gear_contact_radius / constants_.gear_radius;
+    out.velocity_by_approach =
+        -system_.gear_radius_by_approach(phase, y[kMeshApproach]) * y[kGearSpeed];
   }
 
   /// The parts of a piece and the later stages of its step. The end may be the start of the piece
   /// behind it.
   void evaluate_instants(std::size_t index) {
     const OrbitPiece& p = orbit_.pieces[index];
-    constexpr double kNode[4] = {0, 0.5, 0.5, 1};
     FrictionArms arms[3];
     MeshPhase phase[3];
     for (int part = 0; part < 3; ++part) {
@@ -177,7 +153,7 @@ class OrbitDifferentiator {
     const std::array<double, 8>* rate = &part_[0].slopes.rate;
     for (int n = 1; n < 4; ++n) {
       MarchState stage = p.start;
-      for (int i = 0; i < kRates; ++i) stage[i] += kNode[n] * p.length * (*rate)[i];
+      for (int i = 0; i < kRates; ++i) stage[i] += kRungeKuttaNode[n] * p.length * (*rate)[i];
       const int part = n == 3 ? 2 : 1;
       evaluate(phase[part], p.regime, stage, arms[part], stage_[n]);
       rate = &stage_[n].slopes.rate;
@@ -471,7 +447,7 @@ class OrbitDifferentiator {
   MarchScales scales_;
   double light_load_;
   InstructionSet instruction_set_;
-  SensitivityConstants constants_;
+  const MotionConstants& constants_;
   ContactSensitivityModel model_;
   OrbitContacts contacts_;
   /// Of the piece at hand, and the start of the one behind it.

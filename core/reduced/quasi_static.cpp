@@ -164,7 +164,7 @@ ImposedMotion imposed_motion(const GearPairSystem& system, const Torques& torque
     out.mesh_stiffness[n] = at.mesh.mesh_stiffness;
     out.gear_torque[n] = at.mesh.gear_contact_radius * at.mesh_force +
                          friction.at(phase).gear * std::abs(at.mesh_force) - torques.wheel;
-    if (!out.pinion_torque.empty()) out.pinion_torque[n] = at.parametric_torque();
+    if (!out.pinion_torque.empty()) out.pinion_torque[n] = GearPairSystem::parametric_torque(at);
   }
   return out;
 }
@@ -201,7 +201,7 @@ double other_losses(const GearPairSystem& system, ContactRegime regime, const Me
     system.kinematics(grid.at(static_cast<int>(n)), regime, y.data(), at);
     sum += at.damper_force * at.transmission_velocity +
            system.dynamics().pinion_shaft_damping * square(y[kPinionShaftSpeed] - y[kPinionSpeed]);
-    if (!system.options().energy_consistent) sum += at.parametric_torque() * y[kPinionSpeed];
+    if (!system.options().energy_consistent) sum += GearPairSystem::parametric_torque(at) * y[kPinionSpeed];
   }
   return sum / static_cast<double>(count);
 }

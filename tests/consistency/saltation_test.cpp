@@ -2,7 +2,6 @@
 // marches and against the multipliers of the adaptive march, which has no variational equations.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -98,10 +97,6 @@ class GapMarch {
  private:
   static Scene changed(const GapCase& c) {
     Scene scene = reference_scene();
-    // The variational equations leave out how R_g's ripple depends on the gear's lag, 4e-3 of R_g.
-    FourierSeries& radius = scene.gear_set.series.gear_contact_radius;
-    std::fill(radius.sine.begin(), radius.sine.end(), 0);
-    std::fill(radius.cosine.begin(), radius.cosine.end(), 0);
     if (c.change) c.change(scene);
     return scene;
   }
@@ -180,18 +175,18 @@ TEST(MultiplierAcrossGaps, IsThatOfTheAdaptiveMarch) {
   EXPECT_NEAR(shot.statistics.largest_multiplier, marched.statistics.largest_multiplier, 2e-4);
 }
 
-// Without the saltation matrix Newton's method fails there and hundreds of cycles are marched.
+// Without the saltation matrix Newton's method fails there, and 115 cycles are marched and more.
 TEST(ShootingAcrossGaps, TakesFewCyclesWhereTheDamperActsInContactOnly) {
   Scene scene = reference_scene();
   scene.options.damping_in_contact_only = true;
   PointOptions loud;
   loud.start = PointStart::kLargeVibration;
-  for (const double speed : {66.5, 67.0, 68.0}) {
+  for (const double speed : {66.75, 67.0}) {
     SCOPED_TRACE(speed);
     const PointResult r = solve_operating_point(scene, cruise(speed), loud);
     EXPECT_EQ(r.method, SteadyStateMethod::kShooting);
     EXPECT_TRUE(r.contact_loss);
-    EXPECT_LE(r.statistics.mesh_cycles, 150);
+    EXPECT_LE(r.statistics.mesh_cycles, 50);
   }
 }
 
