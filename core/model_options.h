@@ -22,7 +22,7 @@ enum class PressureViscosityIndex {
 };
 
 enum class HertzSolution {
-  kSimplified,  ///< Hamrock-Brewe fits, eqs 20-22 corrected (default)
+  kSimplified,  ///< Hamrock-Brewe fits, eqs 20, 21 and 22 corrected (default)
   kExact,       ///< complete elliptic integrals
 };
 
@@ -33,7 +33,7 @@ enum class HertzLoad {
 
 /// What the model includes. Defaults are the paper's model as corrected.
 struct ModelOptions {
-  bool isothermal = false;                ///< T_c = T_in: no thermal network (eqs 35-39 skipped)
+  bool isothermal = false;                ///< T_c = T_in: no thermal network (eqs 37, 38 and 39)
   bool newtonian = false;                 ///< F = 1 in eq 23: no shear thinning
   bool no_limiting_shear_stress = false;  ///< tau not restricted to tau_L
   bool no_boundary_friction = false;      ///< F_b = 0; asperities still carry load

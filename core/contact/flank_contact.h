@@ -29,8 +29,8 @@ inline constexpr double kHottestContact = 1800;
 const char* contact_status_name(ContactStatus status);
 const char* contact_status_sentence(ContactStatus status);
 
-/// What records and histories tell of a contact; symbols and equations of the paper beside each. SI
-/// units.
+/// The figures of a contact in records and histories; symbols and equations of the paper beside
+/// each. SI units.
 struct ContactFigures {
   ContactStatus status = ContactStatus::kNoLoad;
   double maximum_pressure = 0;        ///< p_max, eq 19 at the centre [Pa]
@@ -85,8 +85,8 @@ struct ContactSolution : ContactFigures {
 /// throws.
 class FlankContactModel {
  public:
-  /// Prepares all that does not depend on the instant: Z and alpha* (eqs 31-33), inlet viscosity
-  /// (eq 34 at T_in = bath + rise), reduced modulus, Greenwood-Tripp prefactors.
+  /// Prepares all that does not depend on the instant: Z and alpha* (eqs 31, 32 and 33), inlet
+  /// viscosity (eq 34 at T_in = bath + rise), reduced modulus, Greenwood-Tripp prefactors.
   /// bath_temperature, inlet_temperature_rise in K.
   /// Throws Refusal when T_in is at or below the Vogel reference temperature, when no Z gives
   /// alpha* back, or when a parameter is outside the law's domain.
@@ -94,7 +94,8 @@ class FlankContactModel {
                     const BoundaryFriction& boundary, double bath_temperature,
                     double inlet_temperature_rise, const ModelOptions& options);
 
-  /// Solves load sharing (eqs 12, 20, 41) and the thermal network (eqs 23-39) by bracketed roots.
+  /// Solves load sharing (eqs 12, 20 and 41), then the shear stress and the temperature that depend
+  /// on each other (eqs 23, 38 and 39), by bracketed roots.
   /// Any finite input gives a finite answer (but for the infinities documented above) or a refusal.
   ContactSolution solve(const ContactConditions& conditions) const;
 

@@ -119,10 +119,9 @@ class DifferentiatedContacts {
 /// - The place where tau meets tau_L and the temperature are found by one iteration.
 ///
 /// Handed to the reference, one by one and then equal to it to the last bit:
-/// - models with the misprints of eqs 17, 31, 32, 43, 44, with the ellipse from the total load,
-/// with
-///   tau_L0 = 0 or a density that rises with temperature; without limiting stress, fluids that may
-///   have several thermal equilibria;
+/// - models with the misprints of eqs 17, 31, 32, 43 and 44, with the ellipse from the total load,
+///   with tau_L0 = 0 or a density that rises with temperature; without limiting stress, fluids that
+///   may have several thermal equilibria;
 /// - contacts without load, sliding or entrainment, or with any of them, or a radius, far beyond
 ///   machines (1e-10 N, 1e-9 m/s, 1 um); refused ones;
 /// - an unlimited stress above 3 GPa (less where the viscosity rises by more than e^32); T_c more

@@ -74,7 +74,6 @@ struct Step {
   Pack per_slope;   // 1/e' where the cut moves
 };
 
-///
 /// kKept: the stress of the step is a result, not only a way to one.
 template <class Growth, bool kKept>
 HWY_INLINE Step halley_step(const Tables& t, const Work& work, int i) {

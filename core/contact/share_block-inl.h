@@ -106,8 +106,8 @@ HWY_INLINE Pack polynomial(const std::array<double, kAsperityTerms>& c, Pack x) 
 template <Digits kDigits>
 constexpr double kShareSettled = kDigits == Digits::kFull ? 2e-6 : 2e-4;
 
-/// One Newton step for ln(e^r + W_asp(r)/W) = 0, r = ln(W_EHL/W) (see load_sharing.h). False where
-/// no contact of the pack needs another one; their last changes are still to be added.
+/// One Newton step for ln(e^r + W_asp(r)/W) = 0, r = ln(W_EHL/W) (see load_sharing.h). Returns
+/// false if no contact of the pack needs another step; the last changes are then still to be added.
 template <Digits kDigits, bool kFirst>
 HWY_INLINE bool newton_step_of_share(const Tables& t, Work& work, int i) {
   const Pack ratio_all = load(work.film_under_all + i) * t.inverse_roughness;

@@ -7,7 +7,8 @@ namespace tribodyn {
 
 inline constexpr int kFlankPairs = 3;  ///< pairs that may touch at once (eq 29)
 
-/// mean + sum_i sine[i-1] sin(i theta) + cosine[i-1] cos(i theta), i = 1..harmonics (eqs 8-11).
+/// mean + sum_i sine[i-1] sin(i theta) + cosine[i-1] cos(i theta), i = 1..harmonics
+/// (eqs 8, 9, 10 and 11).
 /// Both vectors have the same length.
 struct FourierSeries {
   double mean = 0;
@@ -15,8 +16,8 @@ struct FourierSeries {
   std::vector<double> cosine;
 };
 
-/// The four series of eqs 8-11 at one pinion torque. R_g is in theta_g = N_g phi_g, the others in
-/// theta_p = N_p phi_p.
+/// The four series of eqs 8, 9, 10 and 11 at one pinion torque. R_g is in theta_g = N_g phi_g, the
+/// others in theta_p = N_p phi_p.
 struct MeshSeries {
   FourierSeries pinion_contact_radius;      ///< R_p, eq 9 [m]
   FourierSeries gear_contact_radius;        ///< R_g, eq 8 [m]
@@ -46,7 +47,7 @@ struct ToothContactTables {
   SlotTable gear_friction_arm;  ///< r_fr,g
 };
 
-/// Inertias, shafts and mesh of eqs 1-5. SI units.
+/// Inertias, shafts and mesh of eqs 1, 2, 3, 4 and 5. SI units.
 struct DrivelineDynamics {
   double pinion_shaft_inertia;    ///< I_s [kg m2]
   double pinion_inertia;          ///< I_p
@@ -60,7 +61,8 @@ struct DrivelineDynamics {
   double half_backlash;           ///< b [m]
 };
 
-/// A hypoid gear pair in its driveline, as eqs 1-11 and the friction kernel need it.
+/// A hypoid gear pair in its driveline: data of the equations of motion (eqs 1, 2, 3, 4, 5 and 6),
+/// of the mesh functions (eqs 8, 9, 10 and 11) and of the friction kernel.
 struct GearSet {
   int pinion_teeth = 0;  ///< N_p
   int gear_teeth = 0;    ///< N_g

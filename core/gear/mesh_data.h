@@ -11,8 +11,8 @@
 
 namespace tribodyn {
 
-/// Eqs 8-11 at one pair of angles, with what the closed-form transmission error and the energy
-/// terms need. Slopes are per radian of phi_p. Real: double or a pack.
+/// Eqs 8, 9, 10 and 11 at one pair of angles, with what the closed-form transmission error and the
+/// energy terms need. Slopes are per radian of phi_p. Real: double or a pack.
 template <class Real>
 struct MeshFunctionsOf {
   Real pinion_contact_radius;            ///< R_p [m]
@@ -25,7 +25,8 @@ struct MeshFunctionsOf {
 };
 using MeshFunctions = MeshFunctionsOf<double>;
 
-/// What eqs 8-11 need of the pinion's angle alone: prepared once per phase, used at every state.
+/// The terms of eqs 8, 9, 10 and 11 that the pinion's angle alone decides: prepared once per phase,
+/// used at every state.
 struct MeshPhase {
   double theta;                              ///< [rad]
   MeshFunctions pinion;                      ///< R_g its mean, radius_integral the pinion's part

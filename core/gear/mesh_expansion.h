@@ -4,9 +4,9 @@
 
 namespace tribodyn {
 
-/// Eqs 8-11 without their means as power series in theta around one angle. Of eq 8 and the integral
-/// theta is the pinion's, of the gear's two the gear's. Up to |x| = kReach / harmonics the terms
-/// left out are below 1e-14 of the highest harmonic.
+/// Eqs 8, 9, 10 and 11 without their means as power series in theta around one angle. Of eq 8 and
+/// the integral theta is the pinion's, of the gear's two the gear's. Up to |x| = kReach / harmonics
+/// the terms left out are below 1e-14 of the highest harmonic.
 struct MeshExpansion {
   static constexpr int kTerms = 12;
   static constexpr double kReach = 0.35;

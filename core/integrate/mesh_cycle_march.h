@@ -34,9 +34,9 @@ struct GapEvent {
 
 void throw_if_refused(ContactStatus status);
 
-/// The gear pair as DormandPrinceWithEvents sees it, over progress through a mesh cycle in [0, 1]:
-/// mesh phase, but stretched where a flank pair takes or gives up its load (GradedPhase). kRecord
-/// adds the integrals of RecordComponent.
+/// The gear pair as a System of DormandPrinceWithEvents, over progress through a mesh cycle from 0
+/// to 1: mesh phase, but stretched where a flank pair takes or gives up its load (GradedPhase).
+/// kRecord adds the integrals of RecordComponent.
 template <bool kRecord>
 class PhaseSystem {
  public:

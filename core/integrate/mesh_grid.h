@@ -10,7 +10,7 @@
 
 namespace tribodyn {
 
-/// Rows of what eqs 8-11 need of the pinion's angle, at many phases.
+/// Rows of the terms of eqs 8, 9, 10 and 11 that the pinion's angle alone decides, at many phases.
 enum MeshRow {
   kPinionRadiusRow,    ///< R_p [m]
   kStiffnessRow,       ///< k_m [N/m]
@@ -65,7 +65,7 @@ class MeshGrid {
   int contact(int node, int k) const { return contact_[node][k]; }
   const GridContacts& contacts() const { return contacts_; }
   const GridContacts& contacts_at_starts() const { return contacts_at_starts_; }
-  /// Eqs 8-11 where flanks touch on one side.
+  /// The mesh functions (eqs 8, 9, 10 and 11) where flanks touch on one side.
   struct MeshColumns {
     /// kMeshRows at the steps' starts, one more for the end of the cycle, and at their middles.
     Columns starts, middles;

@@ -2,7 +2,7 @@
 // Templates on their number type, compiled per instruction set too: see core/laws/laws.h.
 //
 // One law more: its value of PressureViscosityLaw and the names of its parameters in
-// core/lubricant/lubricant.h; its formula, the bounds below and a case in each of the four
+// core/laws/lubricant.h; its formula, the bounds below and a case in each of the four
 // functions at the end of this file. All others take the law from those functions.
 #if defined(TRIBODYN_CORE_LAWS_PRESSURE_GROWTH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TRIBODYN_CORE_LAWS_PRESSURE_GROWTH_INL_H_

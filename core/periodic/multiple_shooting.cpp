@@ -149,8 +149,8 @@ double MultipleShooting::newton_step() {
   for (int s = 0; s < steps_; ++s) duration_[s] = change_at(s + 1)[kTorqueUnknown];
   unknown_torque() += at_section[kTorqueUnknown];
   is_filled_ = false;
-  // Two steps with the same derivatives tell how much is left; the first one, where they were new,
-  // came twice as near as those that follow will.
+  // The ratio of two steps with the same Jacobian estimates the distance that is left; with a new
+  // Jacobian the first step shrinks the distance twice as much as the following ones will.
   const double shorter = last_step_ > 0 && !anew ? 2 * length / last_step_ : 1;
   last_step_ = length;
   return shorter < 0.5 ? length * shorter / (1 - shorter) : length;

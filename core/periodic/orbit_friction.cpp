@@ -37,7 +37,7 @@ std::array<const double*, 3> states(const OrbitPiece& piece) {
 }
 
 /// Mechanics, loads and motion of the flanks at part 0, 1, 2 of a piece: its start, middle, end.
-/// Tells of each loaded contact: on_contact(flank pair, its kinematics, its conditions).
+/// Calls on_contact(flank pair, its kinematics, its conditions) for each loaded contact.
 template <class OnContact>
 void visit_flanks(const GearPairSystem& system, const MeshGrid& grid, const OrbitPiece& piece,
                   int part, Instant& at, OnContact&& on_contact) {

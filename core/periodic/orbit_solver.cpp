@@ -56,17 +56,18 @@ OrbitSolver::OrbitSolver(const PeriodicProblem& problem, SolverWork& work,
 
 bool OrbitSolver::solve_without_friction(const MeshGrid& grid, const ShootingOptions& options,
                                          PeriodicOrbit& orbit) {
-  constexpr double kNearEnough = 1e-3;  // friction changes the response by some percent
+  constexpr double kFrictionlessTolerance = 1e-3;  // friction changes the response by some percent
   if (MultipleShooting::applies(grid, options, orbit)) {
     PeriodicOrbit together = orbit;
     MultipleShooting shooting(problem_, friction_, storage_, grid, options, together);
-    const bool good = shooting.solve(kNearEnough);
+    const bool good = shooting.solve(kFrictionlessTolerance);
     shooting.finish(work_);
     if (good) orbit = std::move(together);
     if (good) return true;
   }
   SingleShooting shooting(problem_, friction_, grid, options, orbit);
-  const bool good = shooting.march_transient(options.first_cycles) && shooting.solve(kNearEnough);
+  const bool good =
+      shooting.march_transient(options.first_cycles) && shooting.solve(kFrictionlessTolerance);
   shooting.finish(work_);
   return good;
 }

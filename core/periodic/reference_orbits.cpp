@@ -35,7 +35,7 @@ std::vector<PeriodicOrbit> reference_orbits(const PeriodicProblem& problem,
                                             const ShootingOptions& options,
                                             const PeriodicOrbit& origin, int least) {
   constexpr std::size_t kMostGrids = 5;
-  constexpr double kSmall = kShareOfSteps * kLooseTolerance / kReferenceCaution;
+  constexpr double kSmallStepError = kShareOfSteps * kLooseTolerance / kReferenceCaution;
   constexpr double kPicardTolerance = 1e-5;
   SolverWork work;
   OrbitSolver solver(problem, work, kCoefficient);
@@ -62,7 +62,7 @@ std::vector<PeriodicOrbit> reference_orbits(const PeriodicProblem& problem,
     reference.contacts.reset();
     const bool parts =
         options.bilateral_contact && orbit.least_pressing_force < -kTensionForSeparation;
-    if (parts || (out.size() > 1 && error < kSmall)) break;
+    if (parts || (out.size() > 1 && error < kSmallStepError)) break;
   }
   problem.tally.take_refusal();
   if (out.size() == 1) out.front().estimated_error = std::numeric_limits<double>::infinity();

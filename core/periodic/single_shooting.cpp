@@ -34,8 +34,9 @@ bool SingleShooting::march_transient(int cycles) {
 }
 
 bool SingleShooting::renew_jacobian() {
-  constexpr double kHere = 1e-4;
-  if (orbit_.distance_since_jacobian < kHere && orbit_.pieces_of_jacobian == orbit_.pieces.size())
+  constexpr double kFreshJacobianDistance = 1e-4;
+  if (orbit_.distance_since_jacobian < kFreshJacobianDistance &&
+      orbit_.pieces_of_jacobian == orbit_.pieces.size())
     return true;
   MarchState y = orbit_.state;
   Sensitivity sensitivity;

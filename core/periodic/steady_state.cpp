@@ -49,10 +49,10 @@ class PeriodMap {
   /// Whether an extrapolation leaves the mesh about where it is: far out the march goes step by
   /// tiny step.
   bool is_sensible(const Vector& from, const Vector& to) const {
-    constexpr double kFar = 100;  // of the backlash and the static deflection
+    constexpr double kFarthestExtrapolation = 100;  // of the backlash and the static deflection
     constexpr int kApproachUnknown = 1;
     const double moved = std::abs(to(kApproachUnknown) - from(kApproachUnknown)) * scales_.length;
-    return moved < kFar * (2 * system_.dynamics().half_backlash + scales_.length);
+    return moved < kFarthestExtrapolation * (2 * system_.dynamics().half_backlash + scales_.length);
   }
 
   /// Mesh cycles at constant torques; returns the time that they take.
@@ -214,7 +214,7 @@ SteadyState solve_steady_state(const PeriodicProblem& problem, ContactSolver& co
       map.advance(out, period);
     } catch (const Refusal&) {
       if (!extrapolated) throw;
-      // Nobody knows where that was: back to where the march was last.
+      // The march breaks down from the extrapolated state: back to the last state marched to.
       extrapolated = false;
       map.unpack(best < kNone ? best_image : marched, out);
       plain_left = std::min(16 * ++failures, 96);

@@ -10,8 +10,8 @@ namespace tribodyn {
 /// A state at mesh phase 0 near the orbit of flanks that tap each other once in a mesh cycle, under
 /// a load so light that they cannot follow the transmission error:
 ///  1. The gears float in the middle of the backlash under no torque. Newton's method finds the
-///  cycle
-///     that repeats; of the corrections that its two freedoms leave open the shortest is taken.
+///     cycle that repeats; of the corrections that its two freedoms leave open the shortest is
+///     taken.
 ///  2. The mesh approach is moved until the mesh stiffness times the overlap of the flanks carries
 ///     the pinion torque in the mean over a mesh cycle.
 ///

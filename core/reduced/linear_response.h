@@ -33,10 +33,10 @@ struct InertialCorrection {
   double unresolved = 0;
 };
 
-/// Eqs 1-6 for small vibrations about a mean, harmonic by harmonic: mean contact radii and mesh
-/// stiffness, flanks that never part. With D_p, D_g the dynamic stiffnesses of the two sides of the
-/// mesh (gear or pinion, its shaft and the rotor behind the shaft), w the imposed mesh approach and
-/// tau the unbalanced torques of the imposed motion, the correction to x is
+/// Eqs 1, 2, 3, 4, 5 and 6 for small vibrations about a mean, harmonic by harmonic: mean contact
+/// radii and mesh stiffness, flanks that never part. With D_p, D_g the dynamic stiffnesses of the
+/// two sides of the mesh (gear or pinion, its shaft and the rotor behind the shaft), w the imposed
+/// mesh approach and tau the unbalanced torques of the imposed motion, the correction to x is
 ///   (1 + Y (k + i Omega c)) dx = -w - i Omega c Y x + R_p tau_p / D_p - R_g tau_g / D_g,
 ///   Y = R_p^2 / D_p + R_g^2 / D_g,
 /// and once more for the force (k_m - k) dx that the ripple of the stiffness adds. A constant keeps

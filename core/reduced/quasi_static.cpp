@@ -50,7 +50,7 @@ std::vector<OrbitPiece> pieces_of(ContactRegime regime, const std::vector<MarchS
   return out;
 }
 
-/// The unknown torque that the mean power asks for.
+/// The unknown torque at which the mean power of both shafts differs by `loss` [W].
 double torque_of(const PeriodicProblem& problem, const Torques& torques, double loss) {
   const MeshData& mesh = problem.system.mesh();
   const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
@@ -147,7 +147,8 @@ class PicardIteration {
   double contraction_ = 0;  // of the error by one iteration; 0: none made yet
 };
 
-/// What the equilibria at a grid's nodes ask of the driveline. `friction`: what holds them.
+/// The motion of the equilibria at a grid's nodes, and the torques that they leave unbalanced.
+/// `friction`: under which the nodes are in equilibrium.
 ImposedMotion imposed_motion(const GearPairSystem& system, const Torques& torques,
                              ContactRegime regime, const MeshGrid& grid,
                              const std::vector<MarchState>& nodes, FrozenFriction& friction) {
@@ -353,7 +354,7 @@ bool QuasiStaticScreen::passes(const PeriodicProblem& problem) {
                                        problem.torques.wheel, problem.tolerance,
                                        static_cast<double>(problem.solve_wheel_torque)};
   if (const auto known = known_.find(where); known != known_.end()) return known->second;
-  if (known_.size() >= kMost) known_.clear();
+  if (known_.size() >= kMostKept) known_.clear();
   return known_[where] = passes_quasi_static_screen(problem);
 }
 

@@ -49,7 +49,7 @@ class QuasiStaticScreen {
   bool passes(const PeriodicProblem& problem);
 
  private:
-  static constexpr std::size_t kMost = 500;
+  static constexpr std::size_t kMostKept = 500;
   /// Speed, torques, tolerance and which torque is unknown.
   std::map<std::array<double, 5>, bool> known_;
 };

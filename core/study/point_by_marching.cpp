@@ -39,17 +39,17 @@ double expected_right_hand_sides(double mesh_oscillations, double relative_toler
 
 void refuse_what_is_too_slow(const GearPairSystem& system, const OperatingTarget& target,
                              const PointOptions& options) {
-  constexpr double kMost = 1e6;  // one to two seconds
+  constexpr double kMostRightHandSides = 1e6;  // one to two seconds
   const double oscillations = mesh_oscillations(system, target.mean_pinion_speed);
   if (!oscillates_too_often(oscillations)) return;
   const double work = expected_right_hand_sides(oscillations, march_tolerance(options));
-  if (work <= kMost) return;
+  if (work <= kMostRightHandSides) return;
   throw Refusal("TOO_SLOW_TO_MARCH",
                 "at a mean pinion speed of " + number_text(target.mean_pinion_speed) +
                     " rad/s the mesh may oscillate " + number_text(oscillations, 2) +
                     " times in a mesh cycle: too often for shooting, and a march would take " +
                     number_text(work, 2) + " right-hand sides (method = AUTOMATIC takes up to " +
-                    number_text(kMost) + "). A larger tolerance than " +
+                    number_text(kMostRightHandSides) + "). A larger tolerance than " +
                     number_text(options.tolerance) +
                     " may let the quasi-static model answer; model = QUASI_STATIC does whatever "
                     "its error, and method = MARCH marches however long");

@@ -47,7 +47,7 @@ std::optional<OrbitSearch> search_from(const PointProblem& problem, PointStart s
     search.start = carried_start(system, *from, target);
     search.period = from->period;
     search.try_contact_first = !from->contact_loss;
-    search.few_cycles = from->contact_loss ? 0 : search.few_cycles;  // it is near
+    search.few_cycles = from->contact_loss ? 0 : search.few_cycles;  // an orbit is near
   } else {
     const bool loud = start == PointStart::kLargeVibration;
     search.start = static_start(system, target.torques, target.mean_pinion_speed, 0, 0,

@@ -34,30 +34,32 @@ bool of_one_kind(const PointResult& a, const PointResult& b) {
 }
 
 bool may_be_branches(const PointResult& a, const PointResult& b) {
-  constexpr double kFar = 0.3;
-  return a.settled && b.settled && (!of_one_kind(a, b) || distance(a, b) > kFar);
+  constexpr double kSwingDifferenceOfBranches = 0.3;
+  return a.settled && b.settled &&
+         (!of_one_kind(a, b) || distance(a, b) > kSwingDifferenceOfBranches);
 }
 
-constexpr double kNear = 0.1;           // what is on one branch goes on like that
-constexpr double kEnough = 0.04 / 3.6;  // [m/s]
-constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+constexpr double kSameBranchDistance = 0.1;      // what is on one branch goes on like that
+constexpr double kSpeedResolution = 0.04 / 3.6;  // [m/s]
+constexpr double kUnlimitedStride = std::numeric_limits<double>::infinity();
 
 /// Where a branch may end: a response on it, one on another, and between them or at the other one
 /// the nearest speed at which the branch is not found.
 struct Bracket {
   PointResult before, beyond;
   double gone_at;    // [m/s]
-  long cycles_left;  // to march, where shooting cannot tell
+  long cycles_left;  // to march, where shooting does not decide
 };
 
 /// Whether a response found in between is on the branch rather than with the response beyond. Over
-/// a wide step swings of one branch may differ more than those of two: the kind tells first.
+/// a wide step swings of one branch may differ more than those of two: the kind decides first.
 bool is_on_branch(const Bracket& bracket, const PointResult& found) {
   if (of_one_kind(found, bracket.before) && !of_one_kind(found, bracket.beyond)) return true;
   return distance(bracket.before, found) <= distance(found, bracket.beyond);
 }
 
-/// Looks for the branch at a speed. False where it goes on to the response beyond.
+/// Solves at a speed from the branch and narrows the bracket to either side of it. Returns false if
+/// the branch goes on to the response beyond.
 bool narrow_at(PreparedScene& scene, double ascent_angle, double speed, PointOptions options,
                Bracket& bracket) {
   options.carried_state = carried_from(bracket.before);
@@ -73,7 +75,7 @@ bool narrow_at(PreparedScene& scene, double ascent_angle, double speed, PointOpt
   }
   const double first = distance(bracket.before, found), second = distance(found, bracket.beyond);
   if (found.settled && of_one_kind(bracket.before, bracket.beyond) &&
-      std::max(first, second) < kNear) {
+      std::max(first, second) < kSameBranchDistance) {
     return false;
   }
   if (found.settled && is_on_branch(bracket, found)) {
@@ -85,26 +87,28 @@ bool narrow_at(PreparedScene& scene, double ascent_angle, double speed, PointOpt
   return true;
 }
 
-/// The same, halving the speed in between until that or the march is enough. `stride`: how near
-/// the end is expected [m/s]; farther where it is not.
+/// Repeats narrow_at(), halving the bracket, until it is as narrow as the speed resolution or no
+/// mesh cycles are left to march. `stride`: the longest first step from the branch [m/s]; doubled
+/// after each. Returns false if narrow_at() does.
 bool narrow(PreparedScene& scene, double ascent_angle, const PointOptions& options, double stride,
             Bracket& bracket) {
   for (;; stride *= 2) {
     const double width = bracket.gone_at - bracket.before.vehicle_speed;
-    if (std::abs(width) <= 1.001 * kEnough || bracket.cycles_left <= 0) return true;
+    if (std::abs(width) <= 1.001 * kSpeedResolution || bracket.cycles_left <= 0) return true;
     const double step =
-        std::copysign(std::max(std::min(0.5 * std::abs(width), stride), kEnough), width);
+        std::copysign(std::max(std::min(0.5 * std::abs(width), stride), kSpeedResolution), width);
     const double speed = bracket.before.vehicle_speed + step;
     if (!narrow_at(scene, ascent_angle, speed, options, bracket)) return false;
   }
 }
 
-/// A response, followed to a speed or as near to it as it goes.
+/// Follows a response to a speed, or as near to it as its branch reaches, with steps that are
+/// doubled on the branch and halved where it is missed.
 PointResult follow(PreparedScene& scene, double ascent_angle, PointOptions options,
                    PointResult from, double to) {
-  constexpr int kMost = 24;
+  constexpr int kMostPoints = 24;
   double step = to - from.vehicle_speed;
-  for (int i = 0; i < kMost && from.vehicle_speed != to; ++i) {
+  for (int i = 0; i < kMostPoints && from.vehicle_speed != to; ++i) {
     const bool arrives = std::abs(to - from.vehicle_speed) <= std::abs(step);
     options.carried_state = carried_from(from);
     try {
@@ -115,10 +119,10 @@ PointResult follow(PreparedScene& scene, double ascent_angle, PointOptions optio
         step *= 2;
         continue;
       }
-    } catch (const Refusal&) {  // it may be nearer
+    } catch (const Refusal&) {  // a shorter step may stay on the branch
     }
     step /= 2;
-    if (std::abs(step) < kEnough) break;
+    if (std::abs(step) < kSpeedResolution) break;
   }
   return from;
 }
@@ -131,7 +135,7 @@ std::optional<BranchEnd> branch_end(PreparedScene& scene, double ascent_angle, P
   constexpr int kMostMarched = 600;
   const bool only_marched = options.method == SteadyStateMethod::kMarch;
   options.maximum_mesh_cycles = std::min(options.maximum_mesh_cycles, kMostCycles);
-  options.tolerance = std::max(options.tolerance, 0.01 * kNear);
+  options.tolerance = std::max(options.tolerance, 0.01 * kSameBranchDistance);
   options.history = {};
   options.probe_coexisting_response = false;
   Bracket bracket{before, after, after.vehicle_speed,
@@ -139,29 +143,29 @@ std::optional<BranchEnd> branch_end(PreparedScene& scene, double ascent_angle, P
   if (!only_marched) {
     PointOptions quick = options;
     quick.method = SteadyStateMethod::kShooting;  // close to an end marching takes its time
-    if (!narrow(scene, ascent_angle, quick, kAnywhere, bracket)) return std::nullopt;
+    if (!narrow(scene, ascent_angle, quick, kUnlimitedStride, bracket)) return std::nullopt;
     if (bracket.gone_at != bracket.beyond.vehicle_speed) {
       if (options.method == SteadyStateMethod::kShooting) return std::nullopt;
-      // Where periods change hardly anything attracts, and a march takes its time: what is there
-      // is told by the other branch.
+      // Where the period changes orbits hardly attract, and a march takes its time: the other
+      // branch decides, followed to where this one is not found.
       if (bracket.before.period_in_mesh_cycles != bracket.beyond.period_in_mesh_cycles) {
         const PointResult there =
             follow(scene, ascent_angle, quick, bracket.beyond, bracket.gone_at);
-        if (std::abs(there.vehicle_speed - bracket.gone_at) < 4 * kEnough) {
-          if (distance(bracket.before, there) < kNear) return std::nullopt;
+        if (std::abs(there.vehicle_speed - bracket.gone_at) < 4 * kSpeedResolution) {
+          if (distance(bracket.before, there) < kSameBranchDistance) return std::nullopt;
           return BranchEnd{bracket.before.vehicle_speed, bracket.gone_at};
         }
       }
-      // It may go on in another way, as with a period that doubles, or attract too weakly for
-      // shooting to tell.
+      // The branch may go on with another period, or attract too weakly for shooting to decide.
       const double speed = std::exchange(bracket.gone_at, bracket.beyond.vehicle_speed);
       if (!narrow_at(scene, ascent_angle, speed, options, bracket)) return std::nullopt;
     }
   }
-  if (!narrow(scene, ascent_angle, options, only_marched ? kAnywhere : 2 * kEnough, bracket)) {
+  if (!narrow(scene, ascent_angle, options, only_marched ? kUnlimitedStride : 2 * kSpeedResolution,
+              bracket)) {
     return std::nullopt;
   }
-  if (distance(bracket.before, bracket.beyond) < kNear) return std::nullopt;
+  if (distance(bracket.before, bracket.beyond) < kSameBranchDistance) return std::nullopt;
   return BranchEnd{bracket.before.vehicle_speed, bracket.gone_at};
 }
 

@@ -161,7 +161,7 @@ TEST_P(StepsSideBySide, HaveTheDerivativesOfTheWholeMarch) {
   }
 }
 
-TEST_P(StepsSideBySide, KnowForcesMiddlesAndWhatContactsSee) {
+TEST_P(StepsSideBySide, GiveTheForcesMiddlesAndContactConditionsOfTheGearPairSystem) {
   constexpr int kSteps = 12;
   PointBench bench(GetParam(), kSteps, false);
   const GearPairSystem& system = bench.system;
@@ -326,7 +326,7 @@ TEST_P(StepsSideBySide, DifferInTheLastDigitsWithoutFusedMultiplyAdds) {
   }
 }
 
-TEST_P(StepsSideBySide, DoNotKnowTheirNeighbours) {
+TEST_P(StepsSideBySide, AreTheSameBitsWhateverTheStatesOfOtherSteps) {
   constexpr int kSteps = 16;
   const PointBench bench(GetParam(), kSteps, false);
   for (const InstructionSet set : supported_instruction_sets()) {
