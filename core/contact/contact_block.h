@@ -6,6 +6,19 @@
 
 namespace tribodyn {
 
+// A block of contacts in SIMD lanes, stage after stage over all of them:
+//  1. The load is shared between film and asperities (share_block-inl.h): Newton's method on
+//     r = ln(W_EHL/W), as in load_sharing.h.
+//  2. Heat conduction makes T_c a line over the mean stress (heat_block-inl.h), and the shear rate
+//     and pressure make the stress a function of T_c alone (shear_block-inl.h), whose mean over the
+//     contact is a polynomial in two variables (contact_block_tables.h).
+//  3. Temperature and the place where the stress meets its limit are found together, by steps of
+//     Halley's method: first with half of the digits, then, if wanted, with all. Packs of lanes
+//     that have settled take part in no further step.
+//  4. certify() proves for each contact that it has one solution, inside of the tables, and that
+//     the iteration found it; for any other `solved` is 0, and the scalar reference must solve it.
+// (J. F. Traub, Iterative Methods for the Solution of Equations, 1964, for Halley's method.)
+
 /// Contacts solved together; the most that fit next to their intermediates in a first-level cache.
 inline constexpr int kBlockContacts = 32;
 

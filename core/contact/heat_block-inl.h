@@ -63,10 +63,14 @@ HWY_INLINE Fraction alike(Pack x, Pack y) {
 ///
 ///   H(y) = y - ln(gain tau_bar(T, s*(T))) = 0,  y = ln(T - base),     e(s) = ln(tau/tau_L) = 0.
 ///
-/// tau_bar is stationary in s at s*: with the Newton change d = -e/e' its value there is
-/// tau_bar + (d tau_bar/ds) d/2 to third order, which leaves one equation for T. H grows like
-/// 1 + a (T - base) with the steepness a = -d ln tau_bar/dT, whence a curvature H' - 1 for Halley's
-/// correction. The logarithms are rational functions with the same root and slope there.
+///  1. tau_bar is stationary in s at s*: with the Newton change d = -e/e' its value there is
+///     tau_bar + (d tau_bar/ds) d/2 to third order, which leaves one equation for T.
+///  2. Newton's change n = -H/H' of y, at most 2, is corrected to n (1 - n H''/(2 H')), Halley's to
+///     second order. H' grows like 1 + a (T - base) with the steepness a = -d ln tau_bar/dT, whence
+///     H'' = H' - 1.
+///  3. s changes by d and by the shift of s* with T.
+/// The logarithms are rational functions with the same root and slope there. (J. F. Traub,
+/// Iterative Methods for the Solution of Equations, 1964, for Halley's method and its kin.)
 struct Step {
   Pack change;      // of y
   Pack cut_change;  // of s

@@ -39,10 +39,16 @@ struct SharedLoad {
   double log_share;  ///< ln(W_EHL/W)
 };
 
-/// The root of W_EHL + W_asp(W_EHL) = W, solved for ln(W_EHL/W), so that tiny film loads keep their
-/// digits. With the exact F_5/2 and the ellipse from W_EHL there is always one and only one. With
-/// the ellipse from the total load the asperities alone may carry more than W: not found. With the
-/// polynomials roots may be missing or several: the one nearest to W_EHL = W.
+/// The root of W_EHL + W_asp(W_EHL) = W (K. L. Johnson, J. A. Greenwood and S. Y. Poon, Wear 19,
+/// 1972, 91; asperities after J. A. Greenwood and J. H. Tripp, Proc. IMechE 185, 1970, 625):
+///  1. The unknown is r = ln(W_EHL/W) <= 0, so that tiny film loads keep their digits, and the
+///     function g(r) = ln((W_EHL + W_asp)/W), which is nearly linear and rises.
+///  2. With the ellipse from W_EHL the slope of g is at least 2/3, so that r >= -1.5 g(0) closes
+///     the bracket: there is one root and only one. Otherwise the lower end is doubled until g < 0;
+///     the asperities alone may carry more than W: not found.
+///  3. Newton's method, safeguarded by bisection (numerics/bracketed_root.h), from r = 0.
+/// With the polynomials as published roots may be missing or several: r from 3 down to -30 is
+/// scanned in steps of 1/64, and the root nearest to W_EHL = W is returned.
 SharedLoad solve_load_sharing(const LoadSharing& sharing);
 
 }  // namespace tribodyn

@@ -48,11 +48,17 @@ struct MeanShearStress {
 };
 
 /// tau_bar(T) = 2 int_0^1 min(tau(p_max xi), tau_L(p_max xi)) xi dxi: position enters only through
-/// p = p_max xi. Integrated in s = ln(1 + 5.1e-9 p), in which eq 31 is entire, by Gauss-Legendre
-/// between the points where eq 23 meets tau_L (found as bracketed roots; the integral on tau_L is
-/// in closed form). Relative error below 1e-13; of the improved Yasutomi law, whose logarithms end
-/// at negative pressures, below 1e-10. temperature [K] above T_0,ref. `switch_guess` speeds up
-/// repeated calls for one film: start with 0, do not touch.
+/// p = p_max xi.
+///  1. The variable is s = ln(1 + 5.1e-9 p), in which eq 31 is entire.
+///  2. The turns of ln(tau/tau_L) divide [0, s_max] into pieces on which it is monotone; in each
+///     the place where tau meets tau_L, if any, is a root by safeguarded Newton.
+///  3. Between those places tau is integrated by Gauss-Legendre rules of 12 to 20 nodes, on panels
+///     over which it grows by at most 20 powers of e; on tau_L the integral is in closed form.
+/// Relative error below 1e-13; of the improved Yasutomi law, whose logarithms end at negative
+/// pressures, below 1e-10. (P. J. Davis and P. Rabinowitz, Methods of Numerical Integration, 2nd
+/// ed., 1984, for Gauss rules; L. N. Trefethen, Approximation Theory and Approximation Practice,
+/// 2013, for their convergence on analytic functions.) temperature [K] above T_0,ref.
+/// `switch_guess` speeds up repeated calls for one film: start with 0, do not touch.
 MeanShearStress mean_shear_stress(const ShearedFilm& film, double temperature,
                                   double& switch_guess);
 

@@ -11,12 +11,18 @@ struct ThermalEquilibrium {
   MeanShearStress stress;
 };
 
-/// Solves T = base + gain tau_bar(T), base = T_in plus the heating by asperities [K], gain [K/Pa],
-/// as a root in ln(T - base). Where shear thinning leaves tau_bar provably falling with temperature
-/// (alpha_HN beta_HN well below 1, or Newtonian) there is exactly one root and Newton's bracket is
-/// closed from the start; elsewhere the whole range up to the zero of the density law is scanned
-/// and all roots are counted. None where base is outside eqs 26 and 34. gain = 0 (isothermal)
-/// evaluates the stress at base.
+/// Solves T = base + gain tau_bar(T), base = T_in plus the heating by asperities [K], gain [K/Pa]:
+///  1. The unknown is y = ln(T - base), the function H(y) = y - ln(gain tau_bar(T)).
+///  2. If tau_bar provably falls with temperature (alpha_HN beta_HN well below 1, or Newtonian),
+///     the slope of H is at least 1: there is one root, and each value of H closes both ends of the
+///     bracket. The start takes tau_bar as an exponential of T (Lambert's W).
+///  3. Newton's method inside of the bracket, with a bisection in every eighth step: plain Newton
+///     may alternate between the plateau of the limited stress and its hot tail.
+///  4. Otherwise y is scanned in 400 steps, up to the zero of the density law; all roots are
+///     counted, the coldest one is returned.
+/// (C. T. Kelley, Solving Nonlinear Equations with Newton's Method, 2003; R. M. Corless et al.,
+/// Adv. Comput. Math. 5, 1996, 329, for Lambert's function.) No roots if base is outside eqs 26 and
+/// 34. gain = 0 (isothermal) evaluates the stress at base.
 ThermalEquilibrium solve_thermal_equilibrium(const ShearedFilm& film, double base, double gain);
 
 }  // namespace tribodyn

@@ -6,6 +6,17 @@
 
 namespace tribodyn {
 
+// How few steps give an orbit's figures to a tolerance:
+//  1. The orbit is solved on a sequence of grids, each finer by 1.5 or more (StepSequence).
+//  2. From one grid to the next that is r times finer, the figures change by d. If their error
+//     falls by r^p, it is d / (r^p - 1) on the finer grid (Richardson). Runge-Kutta's steps are of
+//     the fourth order, but kinks of the tables inside of steps leave the second: p = 2 is assumed.
+//     Only after two halvings is the fall measured, and taken between 2.5 and 8.
+//  3. Times a safety factor; and never below what the error of the coarser grid allows at the
+//     second order, halved, nor below a bound of what kinks do: two grids may agree by accident.
+// (E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I, 2nd ed.,
+// 1993, section II.4; for safety factors P. J. Roache, J. Fluids Eng. 116, 1994, 405.)
+
 /// From these tolerances on twelve and eight steps a mesh cycle may do. (Below 5e-4 eight save
 /// nothing: random scenes then need a third grid.)
 inline constexpr double kLooseTolerance = 3e-4, kVeryLooseTolerance = 5e-4;

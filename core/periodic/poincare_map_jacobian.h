@@ -13,6 +13,16 @@ namespace tribodyn {
 /// the state at mesh phase 0 and the unknown torque. Its eigenvalues without the torque are the
 /// Floquet multipliers. One multiplier is 1, because the train as a whole runs on at any speed: all
 /// bounds and moduli leave out the multiplier nearest to 1.
+///  - Newton's steps solve with the LU factors of the Jacobian of the residual, map minus identity.
+///  - All multipliers are eigenvalues by the QR algorithm. Cheaper, |lambda| <= ||M^k||^(1/k) for
+///    k = 1, 2, 4 ... 1024 by squaring, after inverse iteration from both sides has found the
+///    multiplier nearest to 1 and its eigenvectors, and M has been deflated by them.
+///  - 1 / ||(M + I)^-1|| bounds the distance of the multipliers from -1 from below; three inverse
+///    iterations with the shift -1 give the eigenvector there.
+/// (R. Seydel, Practical Bifurcation and Stability Analysis, 3rd ed., 2010, chapter 7; G. H. Golub
+/// and C. F. Van Loan, Matrix Computations, 4th ed., 2013, chapter 7.)
+///
+/// Not safe for concurrent access, also by const methods alone: they keep what they compute.
 class PoincareMapJacobian {
  public:
   static constexpr int kUnknowns = 8;  // the seven states and the torque
@@ -29,8 +39,8 @@ class PoincareMapJacobian {
   /// every period.
   bool leading_multiplier_is_negative() const;
   /// Whether the largest modulus is proven to be below a limit, by norms of powers: cheaper than
-  /// eigenvalues. Returns false if there is no proof, mostly within a percent of the limit. A proof
-  /// is remembered.
+  /// eigenvalues. Returns false if there is no proof, mostly within a percent of the limit. The
+  /// bound is kept for the next call.
   bool floquet_radius_below(double limit) const;
   /// Lower bound of the distance of every multiplier from -1, where the period doubles (flip).
   /// Computed once.

@@ -16,11 +16,19 @@ inline constexpr double kShareOfSteps = 0.75;
 /// the steps do to its figures is at most so many times the error of a reference orbit.
 inline constexpr double kReferenceCaution = 3;
 
-/// Finds the orbit from `origin` under Coulomb's friction in place of a lubricant's, on one grid
-/// after another, until the error of the steps is small enough for kLooseTolerance. The orbits of
-/// all lubricants are near, and the steps do nearly the same to them. `estimated_error` is that of
-/// the steps; infinite if it is not known. Returns nothing if there is no such orbit. `least`:
-/// steps of the first grid.
+/// Finds the orbit from `origin` under Coulomb's friction in place of a lubricant's, to start every
+/// lubricant's search and to give the error of its steps: the orbits of all lubricants are near,
+/// and the steps do nearly the same to them.
+///  1. OrbitSolver solves on one grid after another, at most five, until Richardson's estimate
+///     (grid_convergence.h) is small enough for kLooseTolerance, or bilateral contact needs
+///     tension.
+///  2. The error of each coarser grid is its distance from the finest one and the error of that.
+///  3. If the error falls more slowly than the square of the steps from the first grid to the next,
+///     the first one is measured under another friction coefficient too: one may hide it.
+/// (Richardson's extrapolation: E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary
+/// Differential Equations I, 2nd ed., 1993, section II.4.) `estimated_error` is that of the steps;
+/// infinite if it is not known. Returns nothing if there is no such orbit. `least`: steps of the
+/// first grid.
 std::vector<PeriodicOrbit> reference_orbits(const PeriodicProblem& problem,
                                             const ShootingOptions& options,
                                             const PeriodicOrbit& origin, int least);

@@ -8,7 +8,17 @@
 
 namespace tribodyn {
 
-/// Newton's method for a periodic orbit under frozen friction: what its forms share.
+/// Newton's method for a periodic orbit under frozen friction: what its two forms share, over one
+/// period (SingleShooting) or over all its steps (MultipleShooting).
+///  1. A form takes one Newton step and estimates the scaled distance to the orbit.
+///  2. Below the tolerance the orbit is found. Otherwise the Jacobian serves again while the
+///     distance falls below a fifth of the one before (simplified Newton); else a new one is
+///     computed.
+///  3. The search fails after a number of steps or of Jacobians, more of them while the distance
+///     shrinks, as it does slowly near a flip bifurcation; or if the integration breaks down.
+///  4. evaluate_friction() evaluates the contacts on the orbit and freezes their friction anew.
+/// (P. Deuflhard, Newton Methods for Nonlinear Problems, 2004, section 2.1; C. T. Kelley, Solving
+/// Nonlinear Equations with Newton's Method, 2003, for Jacobians that are kept.)
 class Shooting {
  public:
   Shooting(const Shooting&) = delete;

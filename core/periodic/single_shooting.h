@@ -5,8 +5,16 @@
 
 namespace tribodyn {
 
-/// Newton's method on the state at mesh phase 0 and the unknown torque. A period is integrated with
-/// its variational equations, through contact loss too.
+/// Newton's method on the state at mesh phase 0 and the unknown torque, eight unknowns:
+///  1. A period is integrated under frozen friction by classical Runge-Kutta steps that end at
+///     contact loss and regain (Rk4WithEvents), from the state at hand.
+///  2. The residual is the change of the seven states over the period, and the time that it took
+///     less the one wanted.
+///  3. If there is no Jacobian, the variational equations are integrated along; where the rates
+///     jump, the saltation matrix takes the sensitivities across (PoincareMapJacobian).
+///  4. State and torque take Newton's step; Shooting decides whether the Jacobian serves again.
+/// (R. Seydel, Practical Bifurcation and Stability Analysis, 3rd ed., 2010, chapter 7; R. I. Leine
+/// and H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems, 2004.)
 class SingleShooting final : public Shooting {
  public:
   /// As Shooting.

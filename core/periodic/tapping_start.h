@@ -10,10 +10,14 @@ namespace tribodyn {
 /// A state at mesh phase 0 near the orbit of flanks that tap each other once in a mesh cycle, under
 /// a load so light that they cannot follow the transmission error:
 ///  1. The gears float in the middle of the backlash under no torque. Newton's method finds the
-///     cycle that repeats; of the corrections that its two freedoms leave open the shortest is
-///     taken.
+///     cycle that repeats; as the Jacobian leaves two freedoms open (mesh approach and speed), the
+///     shortest of its corrections is taken, by a complete orthogonal decomposition.
 ///  2. The mesh approach is moved until the mesh stiffness times the overlap of the flanks carries
-///     the pinion torque in the mean over a mesh cycle.
+///     the pinion torque in the mean over a mesh cycle: a convex function of the shift, whose root
+///     Newton's method approaches from above.
+///  3. Both are repeated from close to the flanks, because R_g's ripple lies elsewhere there;
+///     shafts are wound up by the torques.
+/// (Newton's method with the pseudoinverse: A. Ben-Israel, J. Math. Anal. Appl. 15, 1966, 243.)
 ///
 /// Returns nullopt if that load holds the flanks together at all phases, if there is no pinion
 /// torque, or if the gears do not float: too little backlash.

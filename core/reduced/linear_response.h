@@ -33,21 +33,31 @@ struct InertialCorrection {
   double unresolved = 0;
 };
 
-/// Eqs 1, 2, 3, 4, 5 and 6 for small vibrations about a mean, harmonic by harmonic: mean contact
-/// radii and mesh stiffness, flanks that never part. With D_p, D_g the dynamic stiffnesses of the
-/// two sides of the mesh (gear or pinion, its shaft and the rotor behind the shaft), w the imposed
-/// mesh approach and tau the unbalanced torques of the imposed motion, the correction to x is
-///   (1 + Y (k + i Omega c)) dx = -w - i Omega c Y x + R_p tau_p / D_p - R_g tau_g / D_g,
-///   Y = R_p^2 / D_p + R_g^2 / D_g,
-/// and once more for the force (k_m - k) dx that the ripple of the stiffness adds. A constant keeps
-/// the mean force.
+/// The response of eqs 1, 2, 3, 4, 5 and 6 to an imposed motion, linear about a mean: mean contact
+/// radii and mesh stiffness, flanks that never part.
+///  1. The imposed motion is expanded into harmonics, up to 96 and fewer than half of the phases.
+///  2. With D_p, D_g the dynamic stiffnesses of the two sides of the mesh (gear or pinion, its
+///     shaft and the rotor behind the shaft), w the imposed mesh approach and tau the unbalanced
+///     torques of the imposed motion, each harmonic of the correction to x is the solution of
+///       (1 + Y (k + i Omega c)) dx = -w - i Omega c Y x + R_p tau_p / D_p - R_g tau_g / D_g,
+///       Y = R_p^2 / D_p + R_g^2 / D_g.
+///  3. The force (k_m - k) dx of the stiffness ripple is formed phase by phase and its response
+///     added: one term of a Neumann series. A constant keeps the mean force.
+///  4. Harmonics beyond are bounded by c / h^2, c from the highest quarter, times their response,
+///     up to 1.5 times the frequency of the mesh.
+/// (A. H. Nayfeh and D. T. Mook, Nonlinear Oscillations, 1979, chapter 6, for systems of several
+/// degrees of freedom.)
 InertialCorrection inertial_correction(const GearPairSystem& system, double mean_pinion_speed,
                                        const ImposedMotion& motion);
 
-/// Whether the ripple of the mesh stiffness may keep a vibration going that nothing forces:
-/// a harmonic of it near twice the frequency of the mesh on its mean stiffness, and larger than the
-/// mesh damper bears (Mathieu's first tongue, |n Omega / 2 omega - 1| < kappa_n / 4, and margins).
-/// `stiffness`: k_m at even phases.
+/// Whether the ripple of the mesh stiffness may keep a vibration going that nothing forces. The
+/// mesh is taken as one oscillator of frequency omega on the mean stiffness and of damping zeta of
+/// the critical one; each harmonic n of the ripple, kappa_n of the mean stiffness, alone makes it
+/// Mathieu's equation with damping. Its first tongue of instability is, for small kappa_n,
+///   |n Omega / (2 omega) - 1| < kappa_n / 4, if kappa_n > 4 zeta.
+/// Returns true inside of a wider region: twice the width and 0.03 more, from half of that kappa_n
+/// on. (A. H. Nayfeh and D. T. Mook, Nonlinear Oscillations, 1979, chapter 5.) `stiffness`: k_m at
+/// even phases.
 bool parametric_resonance_possible(const GearPairSystem& system, double mean_pinion_speed,
                                    const std::vector<double>& stiffness);
 

@@ -10,14 +10,19 @@
 
 namespace tribodyn {
 
-// The cheap sibling of the full model: constant speeds, xdot = 0, and at each mesh phase the load
-// at which the pinion is in equilibrium,
-//   R_p F = T_s + T_fr,p(F).
-// The unknown torque follows from the mean power. The contacts of the whole mesh cycle are solved
-// together under friction frozen in proportion to the load, and load and friction are iterated
-// (Picard): each iteration divides the error by some thirty. Grids are refined until Richardson's
-// estimate is within the tolerance. What the model leaves out is estimated by the linear response
-// to the inertia and dampers that it neglects (linear_response.h).
+// The quasi-static model: constant speeds, xdot = 0, and at each mesh phase the load at which the
+// pinion is in equilibrium, R_p F = T_s + T_fr,p(F).
+//  1. Under friction arms (torque over load) that are held, the equilibria at the nodes of a grid
+//     follow in closed form, but for the mesh approach, on which R_g depends: four substitutions.
+//  2. The contacts of the whole mesh cycle are solved together on them; they give new arms, and by
+//     the mean power the unknown torque.
+//  3. Steps 1 and 2 repeat (Picard; each repetition divides the error by some thirty). The ratio c
+//     of the last two changes of the figures estimates the change that is left: c/(1 - c) times the
+//     last one.
+//  4. Grids are refined until Richardson's estimate is within the tolerance (grid_convergence.h).
+//  5. What the model leaves out is estimated by the linear response to inertia and dampers
+//     (linear_response.h). (C. T. Kelley, Iterative Methods for Linear and Nonlinear Equations,
+//     1995, chapter 4, for fixed-point iterations.)
 
 /// The orbit's pieces hold the equilibria; it has no map. Two grids or more, until the estimate is
 /// within the tolerance or steps are finest. Returns nullopt if a contact is refused (the tally has
@@ -39,7 +44,8 @@ MarchState static_equilibrium(const GearPairSystem& system, const Torques& torqu
 double quasi_static_model_error(const PeriodicProblem& problem, const PeriodicOrbit& solution);
 
 /// Returns false if the mechanics alone, before any friction is computed, put the model's error
-/// beyond the tolerance. Costs two microseconds where that is far off, eight where it is near.
+/// beyond the tolerance: the correction of three harmonics, then of all harmonics of the grid,
+/// against the tolerance. Takes two microseconds if three harmonics decide, eight otherwise.
 bool passes_quasi_static_screen(const PeriodicProblem& problem);
 
 /// A bounded cache of passes_quasi_static_screen(), which does not depend on the lubricant. Of one

@@ -42,15 +42,21 @@ struct SweepPoint {
   std::optional<BranchEnd> branch_end;  ///< on the way here from the point before
 };
 
-/// Cruise points over `vehicle_speeds` [m/s], visited in the order of the direction, each started
-/// from the steady state before it (but see SweepOptions::independent_points). Where two neighbours
-/// may be on different branches, the speed is halved in between until a jump is located or there is
-/// none. That is so where flanks part at one of the neighbours only, where the period differs, or
-/// where the swing of the transmission error differs by 30 %; a branch that is left and found again
-/// between two neighbours is not noticed. The points' method is used: by kAutomatic shooting first,
-/// and where shooting cannot tell some hundred mesh cycles of marching at a speed. With
-/// kShooting an end is reported only if shooting finds the branch beyond it. Returned in ascending
-/// speed. `on_point` is called after each. `gear_set`: as of solve_operating_point.
+/// Cruise points over `vehicle_speeds` [m/s]: natural-parameter continuation in the order of the
+/// direction (R. Seydel, Practical Bifurcation and Stability Analysis, 3rd ed., 2010, chapter 4).
+///  1. Each point starts from the steady state before it (but see
+///     SweepOptions::independent_points).
+///  2. Two neighbours may be on different branches if flanks part at one of them only, if the
+///     period differs, or if the swing of the transmission error differs by 30 %.
+///  3. The interval between them is then bisected: each middle starts from the last point on the
+///     branch and becomes that point, or the point beyond, by its kind and its swing. If the swings
+///     close up, there is no jump; otherwise it lies between the last two speeds.
+///  4. By kAutomatic shooting bisects first. Where it finds nothing, as near a fold or a period
+///     doubling, the other branch is followed to there, or some hundred mesh cycles are marched at
+///     a speed.
+/// A branch that is left and found again between two neighbours is not noticed. With kShooting an
+/// end is reported only if shooting finds the branch beyond it. Returned in ascending speed.
+/// `on_point` is called after each. `gear_set`: as of solve_operating_point.
 std::vector<SweepPoint> sweep_speed(const Scene& scene, std::vector<double> vehicle_speeds,
                                     double ascent_angle, const SweepOptions& options,
                                     const std::function<void(const SweepPoint&)>& on_point = {},
