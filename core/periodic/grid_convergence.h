@@ -98,7 +98,8 @@ class GridComparison {
 
  private:
   /// Bound of the error by kinks of the tables inside of steps, where two step lengths agree by
-  /// accident; by experience the error is half of it.
+  /// accident: twice the errors met. Without it the smallest percentile of estimate over error of
+  /// random scenes (core/README.md) falls from 2.8 to 2.4.
   double kink_error(int steps) const {
     return steps % intervals_ == 0 ? 0 : 0.025 / (static_cast<double>(steps) * steps);
   }

@@ -49,7 +49,8 @@ struct PeriodicOrbit {
 };
 
 /// Tension over the mean force: flanks that bilateral contact holds together under more than this
-/// part without it.
+/// part without it. Not critical: with 0.005 random scenes (core/README.md) take the same work and
+/// one end of a branch moves by 0.04 km/h, with 0.1 they take 0.1 % more.
 inline constexpr double kTensionForSeparation = 0.02;
 
 /// How shooting starts and when it ends.

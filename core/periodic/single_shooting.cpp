@@ -34,6 +34,7 @@ bool SingleShooting::march_transient(int cycles) {
 }
 
 bool SingleShooting::renew_jacobian() {
+  // Scaled. Not critical: with 0 and 1e-2 random scenes (core/README.md) come out the same.
   constexpr double kFreshJacobianDistance = 1e-4;
   if (orbit_.distance_since_jacobian < kFreshJacobianDistance &&
       orbit_.pieces_of_jacobian == orbit_.pieces.size())
