@@ -10,7 +10,7 @@ namespace {
 
 /// Iterates friction and motion (Picard) until neither changes the other.
 bool picard_iterate(Shooting& shooting, const ShootingOptions& options, PeriodicOrbit& orbit) {
-  constexpr int kMostIterations = 24;
+  constexpr int kMostIterations = 24;  // with 12 random scenes come out the same
   // Factor on the gain of the figures over the friction, which differs a little along the orbit.
   // With 1 the smallest percentile of estimate over error of random scenes (core/README.md) falls
   // from 2.8 to 2.1, with 9 they take 0.7 % more work.

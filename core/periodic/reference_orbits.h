@@ -9,11 +9,17 @@
 
 namespace tribodyn {
 
-/// Share of a tolerance for the error of the steps; the rest is for the Picard iteration.
+// Varied over screen_point() of the first 250 random scenes of core/README.md: as they stand, none
+// of 248 estimates is below the error.
+
+/// Share of a tolerance for the error of the steps; the rest is for the Picard iteration. Not
+/// critical: 0.5 and 0.9 leave the estimates bounds as well.
 inline constexpr double kShareOfSteps = 0.75;
 
 /// A lubricant's losses may follow the mesh force more than those of Coulomb's friction do: what
-/// the steps do to its figures is at most so many times the error of a reference orbit.
+/// the steps do to its figures is at most so many times the error of a reference orbit. With 1 five
+/// of 248 screened scenes err more than estimated and three more than the tolerance; with 6 they
+/// take 1.8 % more contacts.
 inline constexpr double kReferenceCaution = 3;
 
 /// Finds the orbit from `origin` under Coulomb's friction in place of a lubricant's, to start every

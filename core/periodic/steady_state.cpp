@@ -86,6 +86,8 @@ class PeriodMap {
   /// torques, by forward differences, but for the one nearest to 1: the train as a whole runs on at
   /// any speed. (Corrections would shift the others: where the period doubles, by more than 1 %.)
   double largest_multiplier(const SectionPoint& at, int period) {
+    // Scaled. Increments from 1e-5 to 1e-3, and step tolerances from 1e-8 to 1e-6, agree to 4e-7 in
+    // the multipliers of the first twelve random scenes of core/README.md.
     constexpr double kStep = 1e-4;
     const Vector origin = pack(at);
     SectionPoint moved = at;

@@ -42,6 +42,8 @@ void sample_quasi_static(const PeriodicProblem& problem, PeriodicOrbit& solution
 }  // namespace
 
 PeriodicProblem quasi_static_problem(const PointProblem& problem) {
+  // The rest is for the model's error. Over the quasi-static scenes of core/README.md 0.25
+  // takes 2.2 times the contacts, 0.9 takes 5 % fewer, but leaves little to the model.
   constexpr double kGridShare = 0.5;
   return problem.periodic(kGridShare * problem.options.tolerance);
 }
