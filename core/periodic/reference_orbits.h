@@ -10,7 +10,7 @@
 namespace tribodyn {
 
 // Varied over screen_point() of the first 250 random scenes of core/README.md: as they stand, none
-// of 248 estimates is below the error.
+// of 248 estimates is below the error (of the first 1000 scenes, two of 996).
 
 /// Share of a tolerance for the error of the steps; the rest is for the Picard iteration. Not
 /// critical: 0.5 and 0.9 leave the estimates bounds as well.

@@ -320,8 +320,11 @@ double quasi_static_model_error(const PeriodicProblem& problem, const PeriodicOr
 }
 
 bool passes_quasi_static_screen(const PeriodicProblem& problem) {
-  constexpr int kFewSteps = 4;  // three harmonics
-  constexpr double kDoubt = 4;  // extremes move by less than the largest correction
+  // Three harmonics; with seven (8 steps) the same of the quasi-static scenes pass at 1e-2.
+  constexpr int kFewSteps = 4;
+  // Extremes move by less than the largest correction. At 1e-2 the quasi-static model answers 119
+  // of the quasi-static scenes, with 1 only 84, with 8 119 for 0.9 % more contacts.
+  constexpr double kDoubt = 4;
   const GearPairSystem& system = problem.system;
   const Torques& torques = problem.torques;
   MeshGrids& grids = problem.grids;

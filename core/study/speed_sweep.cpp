@@ -34,13 +34,19 @@ bool of_one_kind(const PointResult& a, const PointResult& b) {
 }
 
 bool may_be_branches(const PointResult& a, const PointResult& b) {
+  // Relative. Not critical: with 0.15 and 0.6 the sweeps report the same ends.
   constexpr double kSwingDifferenceOfBranches = 0.3;
   return a.settled && b.settled &&
          (!of_one_kind(a, b) || distance(a, b) > kSwingDifferenceOfBranches);
 }
 
-constexpr double kSameBranchDistance = 0.1;      // what is on one branch goes on like that
-constexpr double kSpeedResolution = 0.04 / 3.6;  // [m/s]
+// The constants below were varied over the sweeps of core/README.md.
+
+// Distance of swings, relative, up to which two responses are on one branch. With 0.05 the sweeps
+// report the same ends, with 0.2 the one at 155.8 km/h, where the period doubles, is missed.
+constexpr double kSameBranchDistance = 0.1;
+// To which an end is located [m/s]: what users are told, not tuned (SweepPoint::branch_end).
+constexpr double kSpeedResolution = 0.04 / 3.6;
 constexpr double kUnlimitedStride = std::numeric_limits<double>::infinity();
 
 /// Where a branch may end: a response on it, one on another, and between them or at the other one
@@ -106,7 +112,7 @@ bool narrow(PreparedScene& scene, double ascent_angle, const PointOptions& optio
 /// doubled on the branch and halved where it is missed.
 PointResult follow(PreparedScene& scene, double ascent_angle, PointOptions options,
                    PointResult from, double to) {
-  constexpr int kMostPoints = 24;
+  constexpr int kMostPoints = 24;  // a limit of work: with 8 the sweeps report the same ends
   double step = to - from.vehicle_speed;
   for (int i = 0; i < kMostPoints && from.vehicle_speed != to; ++i) {
     const bool arrives = std::abs(to - from.vehicle_speed) <= std::abs(step);
@@ -130,9 +136,11 @@ PointResult follow(PreparedScene& scene, double ascent_angle, PointOptions optio
 /// Whether a branch ends between two points of a sweep, and where; of several ends one.
 std::optional<BranchEnd> branch_end(PreparedScene& scene, double ascent_angle, PointOptions options,
                                     const PointResult& before, const PointResult& after) {
-  // At a speed: enough for shooting to be sure of responses of one mesh cycle.
-  constexpr int kMostCycles = 400;  // [mesh cycles]
-  constexpr int kMostMarched = 600;
+  // Mesh cycles at a speed: more than the periods that shooting integrates in doubt
+  // (find_orbit.cpp, 300 of one mesh cycle). With 150 the sweeps down across 65 km/h take twenty
+  // times as long.
+  constexpr int kMostCycles = 400;
+  constexpr int kMostMarched = 600;  // of all points marched; with 200 and 2000 the same ends
   const bool only_marched = options.method == SteadyStateMethod::kMarch;
   options.maximum_mesh_cycles = std::min(options.maximum_mesh_cycles, kMostCycles);
   options.tolerance = std::max(options.tolerance, 0.01 * kSameBranchDistance);
