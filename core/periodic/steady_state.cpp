@@ -11,10 +11,15 @@
 namespace tribodyn {
 namespace {
 
-constexpr int kUnknowns = 8;               // the seven states from kPinionShaftTwist on, the torque
-constexpr int kWindow = 8;                 // periods that an extrapolation looks back on
-constexpr int kFirstCycles = 8;            // marched before anything is extrapolated
-constexpr double kStabilityMargin = 3e-4;  // finite differences of the march are that good
+constexpr int kUnknowns = 8;  // the seven states from kPinionShaftTwist on, the torque
+// Varied over marches of the first 30 random scenes of core/README.md, at a step tolerance of 1e-6.
+// Periods that an extrapolation looks back on: 4 take 21 % more work, 12 1 % more.
+constexpr int kWindow = 8;
+// Marched before anything is extrapolated: 2 take 32 % more work, 24 27 % more.
+constexpr int kFirstCycles = 8;
+// On the largest multiplier, which the march gives to 4e-7 without contact loss (see below). Not
+// critical there: with 1e-5 and 3e-3 the same come out; with loss it is a caution.
+constexpr double kStabilityMargin = 3e-4;
 using Vector = Eigen::Matrix<double, kUnknowns, 1>;
 
 /// The period map with its corrections, in scaled unknowns.
@@ -49,7 +54,9 @@ class PeriodMap {
   /// Whether an extrapolation leaves the mesh about where it is: far out the march goes step by
   /// tiny step.
   bool is_sensible(const Vector& from, const Vector& to) const {
-    constexpr double kFarthestExtrapolation = 100;  // of the backlash and the static deflection
+    // Of the backlash and the static deflection. With inertias a thousand times off, an
+    // extrapolation of half a metre ended the march as not finite; 10 takes the same work.
+    constexpr double kFarthestExtrapolation = 100;
     constexpr int kApproachUnknown = 1;
     const double moved = std::abs(to(kApproachUnknown) - from(kApproachUnknown)) * scales_.length;
     return moved < kFarthestExtrapolation * (2 * system_.dynamics().half_backlash + scales_.length);

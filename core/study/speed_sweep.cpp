@@ -45,7 +45,7 @@ bool may_be_branches(const PointResult& a, const PointResult& b) {
 // Distance of swings, relative, up to which two responses are on one branch. With 0.05 the sweeps
 // report the same ends, with 0.2 the one at 155.8 km/h, where the period doubles, is missed.
 constexpr double kSameBranchDistance = 0.1;
-// To which an end is located [m/s]: what users are told, not tuned (SweepPoint::branch_end).
+// Width to which an end is located [m/s], as BranchEnd states; not tuned.
 constexpr double kSpeedResolution = 0.04 / 3.6;
 constexpr double kUnlimitedStride = std::numeric_limits<double>::infinity();
 
