@@ -98,9 +98,9 @@ double deepest_of(const ShearLaw<double>& law, double greatest_factor) {
     return std::min(kDeepest, std::log1p(kMostFolds / std::max(greatest_factor, 1e-3)) / law.index);
   }
   const double log_viscosity = greatest_factor - laws::kRoelandsLogViscosity;
-  const double temperature =
-      law.lubricant.vogel_reference_temperature +
-      law.lubricant.vogel_temperature_coefficient / (log_viscosity - law.log_vogel_prefactor);
+  const double temperature = laws::vogel_temperature(law.lubricant.vogel_temperature_coefficient,
+                                                     law.lubricant.vogel_reference_temperature,
+                                                     log_viscosity - law.log_vogel_prefactor);
   const double folds =
       std::min(kMostFolds, laws::log_greatest_viscosity(law.lubricant) - log_viscosity - 1);
   const auto excess = [&](double depth) {

@@ -145,9 +145,10 @@ void take_coefficients(const RatioRule& rule, const RatioLanes& factor, double d
     integrate(
         prepared,
         [&](std::size_t lane) HWY_ATTR {
-          const Pack temperature = law.lubricant.vogel_temperature_coefficient /
-                                       (load_any(factor.data() + lane) - at_zero_factor) +
-                                   law.lubricant.vogel_reference_temperature;
+          const Pack temperature =
+              vogel_temperature(law.lubricant.vogel_temperature_coefficient,
+                                law.lubricant.vogel_reference_temperature,
+                                load_any(factor.data() + lane) - at_zero_factor);
           return LawFolds{pressure, law.growth, temperature};
         },
         values);

@@ -32,6 +32,14 @@ HWY_INLINE WithSlope<Real> log_vogel_viscosity(Parameter log_prefactor, Paramete
   return {exponent + log_prefactor, -(exponent * inverse)};  // (eq 34)
 }
 
+/// The inverse of eq 34: T [K] at which ln(eta_0/eta_ref) has a value, > 0, from A_1 [K] and T_0
+/// [K].
+template <class Parameter, class Real>
+HWY_INLINE Real vogel_temperature(Parameter coefficient, Parameter reference_temperature,
+                                  Real log_viscosity_ratio) {
+  return coefficient / log_viscosity_ratio + reference_temperature;
+}
+
 /// rho(T) [kg/m3], linear in T [K]. Negative beyond at_zero_kelvin/|slope|.
 template <class Parameter, class Real>
 HWY_INLINE Real linear_density(Parameter at_zero_kelvin, Parameter slope, Real temperature) {

@@ -82,9 +82,9 @@ double kinematic_viscosity(const Lubricant& lubricant, double temperature) {
 }
 
 double temperature_of_viscosity(const Lubricant& lubricant, double viscosity) {
-  return lubricant.vogel_reference_temperature +
-         lubricant.vogel_temperature_coefficient /
-             std::log(viscosity / lubricant.vogel_viscosity_prefactor);
+  return laws::vogel_temperature(lubricant.vogel_temperature_coefficient,
+                                 lubricant.vogel_reference_temperature,
+                                 std::log(viscosity / lubricant.vogel_viscosity_prefactor));
 }
 
 }  // namespace tribodyn
