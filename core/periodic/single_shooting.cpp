@@ -21,6 +21,8 @@ bool SingleShooting::march(MarchState& state, Sensitivity* s) {
 }
 
 bool SingleShooting::march_transient(int cycles) {
+  // Periods from one evaluation of friction to the next. With 5 the sweeps of core/README.md take
+  // 30 % more contacts, with 60 7 % fewer; their ends are the same.
   constexpr int kRenewal = 20;
   for (int i = 0; i < cycles; ++i) {
     MarchState y = orbit_.state;
