@@ -222,15 +222,19 @@ void FlankContactModel::complete(const ContactConditions& k, ContactFigures& fig
   figures.entrainment_speed = std::sqrt(
       laws::entrainment_speed_squared(laws::square(0.5 * (k.velocity_1_x + k.velocity_2_x)),
                                       laws::square(0.5 * (k.velocity_1_y + k.velocity_2_y))));
-  figures.flash_temperature_rise = 0;
-  if (options_.isothermal) return;
+  figures.flash_temperature_rise = flash_temperature_rise(
+      k, figures.central_film_thickness, figures.mean_shear_stress, figures.contact_temperature);
+}
+
+double FlankContactModel::flash_temperature_rise(const ContactConditions& k, double film_thickness,
+                                                 double mean_shear_stress,
+                                                 double contact_temperature) const {
+  if (options_.isothermal) return 0;
   const double slide = std::hypot(k.velocity_1_x - k.velocity_2_x, k.velocity_1_y - k.velocity_2_y);
-  const double oil_rise = figures.mean_shear_stress *
-                          laws::oil_rise_per_stress(slide, figures.central_film_thickness,
-                                                    parameters_.lubricant.thermal_conductivity);
-  // What eq 38 adds to the inlet's temperature beside the rise of the oil.
-  figures.flash_temperature_rise =
-      std::max(0.0, figures.contact_temperature - constants_.inlet_temperature - oil_rise);
+  const double oil_rise =
+      mean_shear_stress *
+      laws::oil_rise_per_stress(slide, film_thickness, parameters_.lubricant.thermal_conductivity);
+  return std::max(0.0, contact_temperature - constants_.inlet_temperature - oil_rise);
 }
 
 namespace {

@@ -103,6 +103,12 @@ class FlankContactModel {
   /// temperature, film and mean shear stress: those that FlankContactBatch has no columns for.
   void complete(const ContactConditions& conditions, ContactFigures& figures) const;
 
+  /// (dT_f)_av of eq 39 [K]: what eq 38 adds to the inlet's temperature beside the rise of the oil.
+  /// Film thickness [m], mean shear stress [Pa] and contact temperature [K] are those of a
+  /// solution.
+  double flash_temperature_rise(const ContactConditions& conditions, double film_thickness,
+                                double mean_shear_stress, double contact_temperature) const;
+
   double inlet_temperature() const { return constants_.inlet_temperature; }
   double pressure_viscosity_index() const { return constants_.shear.index; }
   double reduced_modulus() const { return constants_.reduced_modulus; }  ///< E', eq 13 [Pa]

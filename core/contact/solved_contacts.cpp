@@ -52,6 +52,12 @@ FlankContactBatchResults SolvedContacts::results() {
   return out;
 }
 
+const double* SolvedContacts::column(double ContactFigures::*figure) const {
+  std::size_t row = 0;
+  while (kSolvedRows[row].member != figure) ++row;
+  return rows_[row];
+}
+
 double SolvedContacts::film_load(std::size_t i) const { return rows_[kFilmLoadRow][i]; }
 
 void SolvedContacts::copy(std::size_t i, ContactFigures& to) const {

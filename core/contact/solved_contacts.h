@@ -19,6 +19,9 @@ class SolvedContacts {
   /// The arrays into which a batch writes, all but the status.
   FlankContactBatchResults results();
   const double* friction() const { return rows_[0]; }
+  /// One figure of all contacts, such as column(&ContactFigures::film_ratio). Requires a figure
+  /// that copy() sets.
+  const double* column(double ContactFigures::*figure) const;
   /// Sets the figures that are kept; those that FlankContactModel::complete() fills in are left.
   void copy(std::size_t i, ContactFigures& to) const;
   double film_load(std::size_t i) const;                               ///< W_EHL [N]

@@ -1,21 +1,10 @@
 #include "core/study/response_record.h"
 
-#include <algorithm>
 #include <cmath>
 #include <iterator>
 
 namespace tribodyn {
 namespace {
-
-/// Vertex of the parabola through a sample and its neighbours where it lies less than a step from
-/// the sample; else the sample itself.
-template <std::size_t kCount>
-double vertex(const std::array<double, kCount>& v, std::ptrdiff_t at) {
-  const auto middle = std::clamp<std::ptrdiff_t>(at, 1, kCount - 2);
-  const double fall = v[middle - 1] - v[middle + 1];
-  const double shift = 0.5 * fall / (v[middle - 1] - 2 * v[middle] + v[middle + 1]);
-  return std::abs(shift) < 1 ? v[middle] - 0.25 * fall * shift : v[middle];
-}
 
 /// A figure of contacts whose extremes and load-time weighted mean a result has.
 struct ContactFigure {
@@ -41,31 +30,9 @@ constexpr ContactFigure kContactFigures[] = {
 
 }  // namespace
 
-void ResponseRecord::Range::add(double value) {
-  low = std::min(low, value);
-  high = std::max(high, value);
-}
-
-template <std::size_t kCount>
-void ResponseRecord::Range::add(const std::array<double, kCount>& v) {
-  double lowest = v[0], highest = v[0];
-  for (const double value : v) {
-    lowest = std::min(lowest, value);
-    highest = std::max(highest, value);
-  }
-  const double beyond = 0.25 * (highest - lowest);  // at most
-  if (lowest - beyond >= low && highest + beyond <= high) return;
-  low = std::min({low, lowest, vertex(v, std::min_element(v.begin(), v.end()) - v.begin())});
-  high = std::max({high, highest, vertex(v, std::max_element(v.begin(), v.end()) - v.begin())});
-}
-
-Extremes ResponseRecord::Range::with_mean(double mean) const {
-  return low <= high ? Extremes{low, mean, high} : Extremes{0, mean, 0};
-}
-
 template <std::size_t kCount>
 void ResponseRecord::add(std::span<const Instant, kCount> instants) {
-  const auto add_to = [&](Range& range, double Mechanics::*member) {
+  const auto add_to = [&](SampledRange& range, double Mechanics::*member) {
     std::array<double, kCount> v;
     for (std::size_t n = 0; n < kCount; ++n) v[n] = instants[n].*member;
     range.add(v);
@@ -79,38 +46,12 @@ void ResponseRecord::add(std::span<const Instant, kCount> instants) {
 
 template <std::size_t kCount>
 void ResponseRecord::add_flank(std::span<const Instant, kCount> instants, int k) {
-  const auto counted = static_cast<std::size_t>(std::count_if(
-      instants.begin(), instants.end(), [&](const Instant& i) { return counts(i, k); }));
-  if (counted == 0) return;
-  if (counted == kCount) {
-    for (std::size_t c = 0; c < contact_.size(); ++c) {
-      std::array<double, kCount> v;
-      for (std::size_t n = 0; n < kCount; ++n) {
-        v[n] = instants[n].contact[k].*kContactFigures[c].of_contact;
-      }
-      contact_[c].add(v);
-    }
-    return;
-  }
-  for (std::size_t n = 0; n < kCount; ++n) {
-    const Instant& i = instants[n];
-    if (counts(i, k)) {
-      for (std::size_t c = 0; c < contact_.size(); ++c) {
-        contact_[c].add(i.contact[k].*kContactFigures[c].of_contact);
-      }
-    }
-    if (n == 0 || counts(i, k) == counts(instants[n - 1], k)) continue;
-    // Where the load that counts is crossed.
-    const Instant& before = instants[n - 1];
-    if (!(i.load[k] > 0 && before.load[k] > 0)) continue;
-    // Film, pressure and temperature go like powers of a small load.
-    const double t = std::log(load_floor_ / before.load[k]) / std::log(i.load[k] / before.load[k]);
-    for (std::size_t c = 0; c < contact_.size(); ++c) {
-      const double a = before.contact[k].*kContactFigures[c].of_contact;
-      const double b = i.contact[k].*kContactFigures[c].of_contact;
-      contact_[c].add(a > 0 && b > 0 ? a * std::pow(b / a, t) : a + t * (b - a));
-    }
-  }
+  std::array<double, kCount> load;
+  for (std::size_t n = 0; n < kCount; ++n) load[n] = instants[n].load[k];
+  const auto value = [&](std::size_t figure, std::size_t n) {
+    return instants[n].contact[k].*kContactFigures[figure].of_contact;
+  };
+  add_counted(load, load_floor_, value, contact_);
 }
 
 template void ResponseRecord::add(std::span<const Instant, kSamples> instants);

@@ -2,12 +2,12 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "core/integrate/mesh_cycle_march.h"
 #include "core/study/point_result.h"
+#include "core/study/sampled_range.h"
 
 namespace tribodyn {
 
@@ -18,9 +18,10 @@ class ResponseRecord {
   static constexpr int kSamples = 5;  ///< per step, equidistant: extremes are refined by parabolas
   using Integrals = std::array<double, kRecordComponents>;
 
-  /// Figures of a contact count towards extremes on flanks that carry at least 1 % of
+  /// Figures of a contact count towards extremes on flanks that carry at least kLeastCountedLoad of
   /// `reference_force` [N].
-  explicit ResponseRecord(double reference_force) : load_floor_(0.01 * reference_force) {}
+  explicit ResponseRecord(double reference_force)
+      : load_floor_(kLeastCountedLoad * reference_force) {}
 
   void add_step(std::span<const Instant, kSamples> instants) { add(instants); }
   /// Start, middle and end of a smooth piece.
@@ -35,26 +36,14 @@ class ResponseRecord {
   void fill(const Torques& torques, double cycles, bool periodic, PointResult& out) const;
 
  private:
-  struct Range {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    void add(double value);
-    /// A smooth function, sampled at even distances.
-    template <std::size_t kCount>
-    void add(const std::array<double, kCount>& samples);
-    /// 0 where nothing was added.
-    Extremes with_mean(double mean) const;
-  };
   template <std::size_t kCount>
   void add(std::span<const Instant, kCount> instants);
   template <std::size_t kCount>
   void add_flank(std::span<const Instant, kCount> instants, int k);
-  bool counts(const Instant& instant, int flank) const {
-    return instant.load[flank] > 0 && instant.load[flank] >= load_floor_;
-  }
 
   double load_floor_;
-  Range transmission_error_, mesh_force_, pinion_friction_, gear_friction_;
-  std::array<Range, 9> contact_;  // of figures that count on loaded flanks only
+  SampledRange transmission_error_, mesh_force_, pinion_friction_, gear_friction_;
+  std::array<SampledRange, 9> contact_;  // of figures that count on loaded flanks only
 };
 
 }  // namespace tribodyn

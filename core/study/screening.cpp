@@ -7,14 +7,6 @@
 namespace tribodyn {
 namespace {
 
-std::optional<ContactSummary> contact_summary(const PointResult& r) {
-  if (r.film_ratio.maximum == 0) return std::nullopt;
-  return ContactSummary{
-      r.film_ratio.minimum,        r.film_ratio.mean,          r.contact_temperature.maximum,
-      r.contact_temperature.mean,  r.viscous_loss_power,       r.boundary_loss_power,
-      r.friction_coefficient.mean, r.maximum_pressure.maximum, r.flash_temperature_rise.maximum};
-}
-
 PointFigures figures_of(const PointProblem& problem, const PeriodicOrbit& orbit, PointModel model) {
   const GearPairSystem& system = problem.system();
   const OperatingTarget& target = problem.target;
@@ -37,11 +29,7 @@ PointFigures figures_of(const PointProblem& problem, const PeriodicOrbit& orbit,
   out.estimated_relative_error = known_error(orbit.estimated_error);
   out.contact_solutions = problem.tally.solutions;
   out.model = model;
-  if (problem.options.contact_summary) {
-    PointResult record = empty_result(target, model);
-    fill_from_orbit(problem, orbit, record);
-    out.contact = contact_summary(record);
-  }
+  if (problem.options.contact_summary) out.contact = contact_summary(problem, orbit);
   return out;
 }
 

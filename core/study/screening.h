@@ -2,23 +2,11 @@
 
 #include <optional>
 
+#include "core/study/contact_summary.h"
 #include "core/study/point_result.h"
 #include "core/study/prepared_scene.h"
 
 namespace tribodyn {
-
-/// Figures of the loaded flanks over the steady state.
-struct ContactSummary {
-  double film_ratio_minimum;              ///< lambda_s [-]
-  double film_ratio_mean;                 ///< weighted with load and time [-]
-  double contact_temperature_maximum;     ///< T_c [K]
-  double contact_temperature_mean;        ///< weighted with load and time [K]
-  double viscous_loss_power;              ///< mean [W]
-  double boundary_loss_power;             ///< mean [W]
-  double friction_coefficient_mean;       ///< as PointResult::friction_coefficient [-]
-  double pressure_maximum;                ///< p_max [Pa]
-  double flash_temperature_rise_maximum;  ///< (dT_f)_av [K]
-};
 
 /// The figures of a point to which PointOptions::tolerance applies, and others on request.
 struct PointFigures {

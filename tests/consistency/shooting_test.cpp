@@ -469,6 +469,44 @@ TEST(PointFigures, AreThoseOfTheWholeResult) {
   }
 }
 
+TEST(PointFigures, HaveTheContactsOfTheWholeResult) {
+  PointOptions options;
+  options.contact_summary = true;
+  PointOptions impacts = options;
+  impacts.start = PointStart::kLargeVibration;
+  Scene isothermal = reference_scene();
+  isothermal.options.isothermal = true;
+  const Scene scene = reference_scene();
+  const struct {
+    const Scene& scene;
+    OperatingCondition condition;
+    const PointOptions& options;
+  } places[] = {{scene, cruise(2), options},          {scene, cruise(20), options},
+                {scene, cruise(67.5), impacts},       {scene, cruise(80), options},
+                {scene, cruise(100), options},        {scene, prescribed(-20, 300), options},
+                {scene, prescribed(1, 600), options}, {isothermal, cruise(60), options}};
+  for (const auto& place : places) {
+    SCOPED_TRACE(place.condition.vehicle_speed * 3.6);
+    PreparedScene prepared(place.scene);
+    const PointFigures brief = solve_point_figures(prepared, place.condition, place.options);
+    const PointResult whole = solve_operating_point(place.scene, place.condition, place.options);
+    ASSERT_TRUE(brief.contact);
+    const ContactSummary expected = contact_summary(whole).value();
+    const auto expect_same = [&](double ContactSummary::*figure) {
+      EXPECT_EQ(*brief.contact.*figure, expected.*figure);
+    };
+    expect_same(&ContactSummary::film_ratio_minimum);
+    expect_same(&ContactSummary::film_ratio_mean);
+    expect_same(&ContactSummary::contact_temperature_maximum);
+    expect_same(&ContactSummary::contact_temperature_mean);
+    expect_same(&ContactSummary::viscous_loss_power);
+    expect_same(&ContactSummary::boundary_loss_power);
+    expect_same(&ContactSummary::friction_coefficient_mean);
+    expect_same(&ContactSummary::pressure_maximum);
+    expect_same(&ContactSummary::flash_temperature_rise_maximum);
+  }
+}
+
 TEST(ShootingRequests, AreCancelled) {
   PointOptions options;
   int asked = 0;
