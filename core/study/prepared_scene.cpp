@@ -22,11 +22,13 @@ PreparedGearSet::PreparedGearSet(const GearSet& gear_set, const Solid& solid,
       grids_(mesh_, gear_set_.dynamics.half_backlash,
              reduced_modulus(solid.youngs_modulus, solid.poissons_ratio), options) {}
 
-PreparedScene::PreparedScene(const Scene& scene, std::shared_ptr<PreparedGearSet> gear_set)
+PreparedScene::PreparedScene(const Scene& scene, std::shared_ptr<PreparedGearSet> gear_set,
+                             InstructionSet instruction_set)
     : scene_(scene),
-      contacts_(FlankContactModel(scene.lubricant, scene.solid, scene.roughness, scene.boundary,
-                                  scene.sump_temperature, scene.inlet_temperature_rise,
-                                  scene.options)),
+      contacts_(
+          FlankContactModel(scene.lubricant, scene.solid, scene.roughness, scene.boundary,
+                            scene.sump_temperature, scene.inlet_temperature_rise, scene.options),
+          instruction_set),
       gear_set_(gear_set ? std::move(gear_set)
                          : std::make_shared<PreparedGearSet>(scene.gear_set, scene.solid,
                                                              scene.options)) {}

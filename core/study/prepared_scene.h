@@ -41,10 +41,12 @@ class PreparedGearSet {
 class PreparedScene {
  public:
   /// `gear_set`: one that other scenes use too; it must be that of the scene, of the same solid and
-  /// options. Null: it is prepared here. Throws Refusal as FlankContactModel and PreparedGearSet
-  /// do.
-  explicit PreparedScene(const Scene& scene, std::shared_ptr<PreparedGearSet> gear_set = nullptr);
-  explicit PreparedScene(const Scene&&, std::shared_ptr<PreparedGearSet> = nullptr) = delete;
+  /// options, and used with the same instruction set. Null: it is prepared here. `instruction_set`
+  /// must be supported. Throws Refusal as FlankContactModel and PreparedGearSet do.
+  explicit PreparedScene(const Scene& scene, std::shared_ptr<PreparedGearSet> gear_set = nullptr,
+                         InstructionSet instruction_set = FlankContactBatch::widest());
+  explicit PreparedScene(const Scene&&, std::shared_ptr<PreparedGearSet> = nullptr,
+                         InstructionSet = FlankContactBatch::widest()) = delete;
 
   const Scene& scene() const { return scene_; }
   const FlankContactBatch& contacts() const { return contacts_; }

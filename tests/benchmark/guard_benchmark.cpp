@@ -238,6 +238,7 @@ int run(const std::string& results, int calls) {
       {"get: median that authorization adds", 1e6 * (median(with) - median(without)), "us", {}},
       {"get: p99 with authorization over without", p99_with / p99_without, "", 1.10}};
   for (const Measurement& each : measure_flood()) out.push_back(each);
+  std::printf("%s\n", machine_name().c_str());
   print(out);
   record(results, out);
   return 0;

@@ -6,11 +6,14 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <thread>
+
+#include "core/contact/flank_contact_batch.h"
 
 namespace tribodyn {
 namespace {
@@ -98,7 +101,14 @@ std::string machine_name() {
       break;
     }
   }
-  return processor + ", " + std::to_string(std::thread::hardware_concurrency()) + " processors";
+  return processor + ", " + std::to_string(std::thread::hardware_concurrency()) + " processors, " +
+         FlankContactBatch::name(FlankContactBatch::widest());
+}
+
+double processor_seconds() {
+  timespec at{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &at);
+  return static_cast<double>(at.tv_sec) + 1e-9 * static_cast<double>(at.tv_nsec);
 }
 
 double median(std::vector<double> values) {

@@ -26,8 +26,12 @@ void record(const std::string& path, const std::vector<Measurement>& measurement
 /// A table for people.
 void print(const std::vector<Measurement>& measurements);
 
-/// What the figures were measured on: the processor's name and the number of processors.
+/// What the figures were measured on: the processor's name, the number of processors, and the
+/// instruction set that the core works on vectors with unless it is told another one.
 std::string machine_name();
+
+/// Processor time of this process so far [s].
+double processor_seconds();
 
 double median(std::vector<double> values);
 

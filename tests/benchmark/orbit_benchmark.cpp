@@ -7,6 +7,7 @@
 #include <fstream>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,10 @@
 // figure; this solver starts without knowing anything, must find out by itself when to stop, and is
 // judged by the worst of both inefficiencies, torque and extremes of the transmission error. The
 // truth is the event-exact march at a tolerance of 1e-10. Times are medians of interleaved turns.
+//
+// Where the machine has more than AVX2, smooth points are solved with AVX2 as well, by both. And
+// the figures of all points are computed with all sensitivities and without, in turns, by processor
+// time at a tolerance of 1e-3.
 namespace tribodyn {
 namespace {
 
@@ -152,112 +157,214 @@ bool cost_of(const Transient& transient, double truth, double error, int recorde
   return true;
 }
 
+const char* const kShooting = "shooting";
+const char* const kMarch = "event-exact march";
+const char* const kAdams = "CVODE Adams";
+const char* const kAdamsRoots = "CVODE Adams, roots";
+
+/// What all methods take at a place, by name and accuracy.
 struct Contest {
   std::map<std::string, std::map<double, std::vector<double>>> microseconds;
   std::map<std::string, std::map<double, Run>> run;
+  std::map<std::string, double> fifty;  // least of 50 recorded cycles [us]
 };
 
-const char* const kShooting = "shooting";
-const char* const kMarch = "event-exact march";
+/// One turn of this solver.
+void solve_in_turn(PreparedScene& prepared, const Place& place, const PointResult& truth,
+                   const char* name, SteadyStateMethod method, double tolerance, Contest& contest) {
+  OperatingCondition condition;
+  condition.vehicle_speed = place.kilometres_per_hour / 3.6;
+  PointOptions options;
+  options.start = place.start;
+  options.method = method;
+  options.tolerance = tolerance;
+  if (method == SteadyStateMethod::kMarch) {
+    options.march_step_tolerance = std::min(1e-3, tolerance);
+    options.march_settling_tolerance = std::min(1e-2, 0.1 * tolerance);
+  }
+  PointFigures r;
+  contest.microseconds[name][tolerance].push_back(
+      time_of([&] { r = solve_point_figures(prepared, condition, options); }));
+  contest.run[name][tolerance] = {r.contact_solutions, 0, true_error(r, truth)};
+}
+
+void shoot_in_turn(PreparedScene& prepared, const Place& place, const PointResult& truth,
+                   Contest& contest) {
+  for (const double tolerance : {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6}) {
+    solve_in_turn(prepared, place, truth, kShooting, SteadyStateMethod::kAutomatic, tolerance,
+                  contest);
+  }
+}
+
+/// One turn of a common integrator.
+void march_in_turn(PreparedScene& prepared, const Place& place, const PointResult& truth,
+                   const MarchingSolver& solver, Contest& contest) {
+  for (const double accuracy : solver.accuracies) {
+    Transient transient;
+    try {
+      transient = march(prepared, place, solver, accuracy, truth);
+    } catch (const std::exception&) {
+      continue;  // its tolerance is too coarse for it
+    }
+    Run one, many;
+    const double exact = truth.inefficiency_rms.value();
+    if (!cost_of(transient, exact, place.error, 1, one)) continue;
+    cost_of(transient, exact, place.error, 50, many);
+    contest.microseconds[solver.name][accuracy].push_back(one.microseconds);
+    contest.run[solver.name][accuracy] = one;
+    double& best = contest.fifty.try_emplace(solver.name, many.microseconds).first->second;
+    best = std::min(best, many.microseconds);
+  }
+}
+
+/// Sets the times of the runs. Returns the least of each method that errs as little as asked.
+std::map<std::string, double> least_times(const Place& place, Contest& contest) {
+  std::map<std::string, double> best;
+  for (auto& [name, runs] : contest.run) {
+    for (auto& [accuracy, one] : runs) {
+      one.microseconds = median(contest.microseconds[name][accuracy]);
+      if (one.error > place.error) continue;
+      double& least = best.try_emplace(name, std::numeric_limits<double>::infinity()).first->second;
+      least = std::min(least, one.microseconds);
+    }
+  }
+  return best;
+}
+
+void print_and_store(const Place& place, const Contest& contest,
+                     const std::map<std::string, double>& best, std::ofstream& csv) {
+  std::printf("\n%s km/h, error %g\n%-22s %10s %10s %12s %10s\n", place.name, place.error, "method",
+              "accuracy", "contacts", "microseconds", "error");
+  for (const auto& [name, runs] : contest.run) {
+    for (const auto& [accuracy, one] : runs) {
+      csv << place.name << ',' << '"' << name << '"' << ',' << accuracy << ',' << one.contacts
+          << ',' << one.microseconds << ',' << one.error << '\n';
+    }
+  }
+  for (const auto& [name, least] : best) {
+    for (const auto& [accuracy, one] : contest.run.at(name)) {
+      if (one.microseconds != least) continue;
+      std::printf("%-22s %10g %10ld %12.1f %10.1e", name.c_str(), accuracy, one.contacts, least,
+                  one.error);
+      const auto fifty = contest.fifty.find(name);
+      if (fifty != contest.fifty.end()) std::printf("   50 cycles: %.0f", fifty->second);
+      std::printf("\n");
+    }
+  }
+}
+
+/// Times of the better CVODE by Adams over those of shooting.
+double adams_over_shooting(const std::map<std::string, double>& best) {
+  const double plain = best.at(kAdams);
+  const double baseline =
+      best.contains(kAdamsRoots) ? std::min(plain, best.at(kAdamsRoots)) : plain;
+  return baseline / best.at(kShooting);
+}
+
+/// The same at a smooth point with another instruction set.
+double adams_over_shooting(PreparedScene& prepared, const Place& place, const PointResult& truth,
+                           const std::vector<MarchingSolver>& solvers, int turns) {
+  Contest contest;
+  for (int turn = 0; turn < turns; ++turn) {
+    shoot_in_turn(prepared, place, truth, contest);
+    for (const MarchingSolver& solver : solvers) {
+      if (solver.name != kAdams && solver.name != kAdamsRoots) continue;
+      march_in_turn(prepared, place, truth, solver, contest);
+    }
+  }
+  return adams_over_shooting(least_times(place, contest));
+}
+
+/// Processor time of a place's figures with all sensitivities over that without, at the usual
+/// tolerance.
+double with_sensitivities_over_without(PreparedScene& prepared, const Place& place, int turns) {
+  OperatingCondition condition;
+  condition.vehicle_speed = place.kilometres_per_hour / 3.6;
+  constexpr int kRepetitions = 20;
+  const auto seconds = [&](bool sensitivities) {
+    PointOptions options;
+    options.start = place.start;
+    options.sensitivities = sensitivities;
+    solve_point_figures(prepared, condition, options);  // brings its memory into the caches
+    const double start = processor_seconds();
+    for (int n = 0; n < kRepetitions; ++n) solve_point_figures(prepared, condition, options);
+    return processor_seconds() - start;
+  };
+  std::vector<double> ratios;
+  for (int turn = 0; turn < turns; ++turn) {
+    const double without = seconds(false);
+    ratios.push_back(seconds(true) / without);
+  }
+  return median(ratios);
+}
 
 int run(const std::string& results, const std::string& table, int turns) {
   const Scene scene = reference_scene();
   PreparedScene prepared(scene);
+  const InstructionSet widest = prepared.contacts().instruction_set();
+  std::optional<PreparedScene> by_avx2;  // where the machine has more
+  if (widest == InstructionSet::kAvx512) by_avx2.emplace(scene, nullptr, InstructionSet::kAvx2);
   const std::vector<MarchingSolver> solvers = marching_solvers();
   std::ofstream csv(table);
   csv << "place,method,accuracy,contacts,microseconds,true_error\n";
-  std::map<bool, std::vector<double>> ratios;  // by whether contact is lost
-  std::map<bool, std::vector<double>> times;
+  std::map<bool, std::vector<double>> ratios, times, sensitivities;  // by whether contact is lost
+  std::vector<double> avx2_ratios;
   std::vector<Measurement> out;
+  std::printf("%s; medians of %d turns\n", machine_name().c_str(), turns);
   for (const Place& place : kPlaces) {
     OperatingCondition condition;
     condition.vehicle_speed = place.kilometres_per_hour / 3.6;
     const PointResult truth = truth_of(prepared, condition, place.start);
     Contest contest;
-    std::map<std::string, double> fifty;
     for (int turn = 0; turn < turns; ++turn) {
-      const auto own = [&](const char* name, SteadyStateMethod method, double tolerance) {
-        PointOptions options;
-        options.start = place.start;
-        options.method = method;
-        options.tolerance = tolerance;
-        if (method == SteadyStateMethod::kMarch) {
-          options.march_step_tolerance = std::min(1e-3, tolerance);
-          options.march_settling_tolerance = std::min(1e-2, 0.1 * tolerance);
-        }
-        PointFigures r;
-        contest.microseconds[name][tolerance].push_back(
-            time_of([&] { r = solve_point_figures(prepared, condition, options); }));
-        contest.run[name][tolerance] = {r.contact_solutions, 0, true_error(r, truth)};
-      };
-      for (const double tolerance : {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6}) {
-        own(kShooting, SteadyStateMethod::kAutomatic, tolerance);
+      shoot_in_turn(prepared, place, truth, contest);
+      for (const double tolerance : {1e-3, 1e-4}) {
+        solve_in_turn(prepared, place, truth, kMarch, SteadyStateMethod::kMarch, tolerance,
+                      contest);
       }
-      for (const double tolerance : {1e-3, 1e-4}) own(kMarch, SteadyStateMethod::kMarch, tolerance);
       for (const MarchingSolver& solver : solvers) {
-        for (const double accuracy : solver.accuracies) {
-          Transient transient;
-          try {
-            transient = march(prepared, place, solver, accuracy, truth);
-          } catch (const std::exception&) {
-            continue;  // its tolerance is too coarse for it
-          }
-          Run one, many;
-          const double exact = truth.inefficiency_rms.value();
-          if (!cost_of(transient, exact, place.error, 1, one)) continue;
-          cost_of(transient, exact, place.error, 50, many);
-          contest.microseconds[solver.name][accuracy].push_back(one.microseconds);
-          contest.run[solver.name][accuracy] = one;
-          double& best = fifty.try_emplace(solver.name, many.microseconds).first->second;
-          best = std::min(best, many.microseconds);
-        }
+        march_in_turn(prepared, place, truth, solver, contest);
       }
     }
-    std::map<std::string, double> best;
-    std::printf("\n%s km/h, error %g\n%-22s %10s %10s %12s %10s\n", place.name, place.error,
-                "method", "accuracy", "contacts", "microseconds", "error");
-    for (auto& [name, runs] : contest.run) {
-      for (auto& [accuracy, one] : runs) {
-        one.microseconds = median(contest.microseconds[name][accuracy]);
-        csv << place.name << ',' << '"' << name << '"' << ',' << accuracy << ',' << one.contacts
-            << ',' << one.microseconds << ',' << one.error << '\n';
-        if (one.error > place.error) continue;
-        double& least =
-            best.try_emplace(name, std::numeric_limits<double>::infinity()).first->second;
-        if (one.microseconds < least) {
-          least = one.microseconds;
-        }
-      }
-    }
-    for (const auto& [name, least] : best) {
-      for (const auto& [accuracy, one] : contest.run[name]) {
-        if (one.microseconds != least) continue;
-        std::printf("%-22s %10g %10ld %12.1f %10.1e", name.c_str(), accuracy, one.contacts, least,
-                    one.error);
-        if (fifty.contains(name)) std::printf("   50 cycles: %.0f", fifty[name]);
-        std::printf("\n");
-      }
-    }
-    const double baseline = std::min(best.at("CVODE Adams"), best.contains("CVODE Adams, roots")
-                                                                 ? best.at("CVODE Adams, roots")
-                                                                 : best.at("CVODE Adams"));
+    const std::map<std::string, double> best = least_times(place, contest);
+    print_and_store(place, contest, best, csv);
+    const double ratio = adams_over_shooting(best);
     const bool asked = place.error < 1e-3 || std::string(place.name) != "67.5 up";
     if (asked) {
-      ratios[truth.contact_loss].push_back(baseline / best.at(kShooting));
+      ratios[truth.contact_loss].push_back(ratio);
       times[truth.contact_loss].push_back(best.at(kShooting));
     }
-    out.push_back({std::string("shooting, ") + place.name + " km/h", best.at(kShooting), "us", {}});
-    out.push_back({std::string("CVODE Adams over shooting, ") + place.name + " km/h",
-                   baseline / best.at(kShooting),
+    if (asked && by_avx2 && !truth.contact_loss) {
+      avx2_ratios.push_back(adams_over_shooting(*by_avx2, place, truth, solvers, turns));
+    }
+    sensitivities[truth.contact_loss].push_back(
+        with_sensitivities_over_without(prepared, place, 2 * turns + 1));
+    const std::string at = std::string(", ") + place.name + " km/h";
+    out.push_back({"shooting" + at, best.at(kShooting), "us", {}});
+    out.push_back({"CVODE Adams over shooting" + at, ratio, "-", {}});
+    out.push_back({"with all sensitivities over without" + at,
+                   sensitivities[truth.contact_loss].back(),
                    "-",
                    {}});
   }
-  out.push_back({"CVODE Adams over shooting, smooth points, error 1e-3", middle(ratios[false]), "-",
-                 200, false});
+  const auto with = [](InstructionSet set) {
+    return std::string(", ") + FlankContactBatch::name(set);
+  };
+  const std::string smooth = "CVODE Adams over shooting, smooth points, error 1e-3";
+  out.push_back({smooth + with(widest), middle(ratios[false]), "-", 200, false});
+  if (by_avx2) {
+    out.push_back({smooth + with(InstructionSet::kAvx2), middle(avx2_ratios), "-", 200, false});
+  }
   out.push_back({"CVODE Adams over shooting, vibro-impact points, error 1e-4", middle(ratios[true]),
                  "-", 60, false});
   out.push_back({"shooting, smooth points, error 1e-3", middle(times[false]), "us", 30.0});
   out.push_back({"shooting, vibro-impact points, error 1e-4", middle(times[true]), "us", 300.0});
+  out.push_back({"with all sensitivities over without, smooth points", middle(sensitivities[false]),
+                 "-", 3.0});
+  out.push_back({"with all sensitivities over without, vibro-impact points",
+                 middle(sensitivities[true]),
+                 "-",
+                 {}});
   std::printf("\n");
   print(out);
   if (!results.empty()) record(results, out);

@@ -370,6 +370,7 @@ int main(int count, char** words) {
   try {
     const auto figures = server::measure(count > 2 ? std::atoi(words[2]) : 1000,
                                          count > 3 ? std::atof(words[3]) : 20);
+    std::printf("%s\n", machine_name().c_str());
     print(figures);
     std::filesystem::create_directories(std::filesystem::absolute(results).parent_path());
     record(results, figures);

@@ -19,8 +19,10 @@
 #include "tests/support/reference_scene.h"
 
 // Screening: many fluids at 20 to 140 km/h by 10 and sumps of 20, 40 and 90 C on the reference gear
-// set from the static start, in units of a batch evaluation's time and over threads; and a whole
-// sweep in both directions against the time of its friction evaluations alone. Tolerance 1e-3.
+// set from the static start, in units of a batch evaluation's time and over threads, with and
+// without the figures of the contacts; and a whole sweep in both directions against the time of its
+// friction evaluations alone. Tolerance 1e-3. What runs on one thread is measured by processor
+// time.
 namespace tribodyn {
 namespace {
 
@@ -55,13 +57,16 @@ std::vector<Scene> candidates(int fluids) {
 
 struct Work {
   long points = 0, contacts = 0, marched = 0;
-  double seconds = 0;
+  double seconds = 0, processor_seconds = 0;
 };
+
+constexpr double kFirstSpeed = 20, kLastSpeed = 140, kSpeedStep = 10;  // [km/h]
 
 Work screen(const std::vector<Scene>& scenes, int threads) {
   std::atomic<std::size_t> next{0};
   std::atomic<long> points{0}, contacts{0}, marched{0};
   const auto start = Clock::now();
+  const double processor_start = processor_seconds();
   const auto work = [&] {
     constexpr std::size_t kShard = 15;
     const auto gear_set =
@@ -71,7 +76,7 @@ Work screen(const std::vector<Scene>& scenes, int threads) {
       if (first >= scenes.size()) return;
       for (std::size_t i = first; i < std::min(first + kShard, scenes.size()); ++i) {
         PreparedScene prepared(scenes[i], gear_set);
-        for (double speed = 20; speed <= 140; speed += 10) {
+        for (double speed = kFirstSpeed; speed <= kLastSpeed; speed += kSpeedStep) {
           OperatingCondition condition;
           condition.vehicle_speed = speed / 3.6;
           const PointFigures r = screen_point(prepared, condition, {});
@@ -85,14 +90,50 @@ Work screen(const std::vector<Scene>& scenes, int threads) {
   std::vector<std::thread> pool;
   for (int i = 0; i < threads; ++i) pool.emplace_back(work);
   for (std::thread& thread : pool) thread.join();
-  return {points, contacts, marched, seconds_since(start)};
+  return {points, contacts, marched, seconds_since(start), processor_seconds() - processor_start};
 }
 
-/// Friction of contacts of the reference gear set, 256 at a time [s].
-double seconds_per_evaluation() {
+/// Processor time that the figures of the contacts add to a screened point [s].
+double seconds_of_contact_figures(const std::vector<Scene>& scenes) {
+  const auto gear_set =
+      std::make_shared<PreparedGearSet>(scenes[0].gear_set, scenes[0].solid, scenes[0].options);
+  double seconds[2] = {0, 0};  // without and with them
+  long points = 0;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    PreparedScene prepared(scenes[i], gear_set);
+    for (double speed = kFirstSpeed; speed <= kLastSpeed; speed += kSpeedStep) {
+      OperatingCondition condition;
+      condition.vehicle_speed = speed / 3.6;
+      screen_point(prepared, condition, {});  // the reference orbit is there, and in the caches
+      for (const bool turn : {false, true}) {
+        PointOptions options;
+        options.contact_summary = turn != (i % 2 == 0);
+        const double start = processor_seconds();
+        screen_point(prepared, condition, options);
+        seconds[options.contact_summary ? 1 : 0] += processor_seconds() - start;
+      }
+      ++points;
+    }
+  }
+  return (seconds[1] - seconds[0]) / static_cast<double>(points);
+}
+
+/// How friction is evaluated: so many contacts at a time.
+struct Evaluation {
+  std::size_t contacts;
+  Digits digits;
+  bool all_figures;
+};
+/// The unit of what a point takes.
+constexpr Evaluation kBatch{256, Digits::kFull, false};
+/// As the orbits of a sweep have it at this tolerance, on which some 65 contacts lie.
+constexpr Evaluation kOfSweep{64, Digits::kHalf, true};
+
+/// Processor time of a contact of the reference gear set [s].
+double seconds_per_evaluation(const Evaluation& evaluation) {
   const Scene scene = reference_scene();
   std::vector<ContactConditions> conditions;
-  for (double speed = 20; speed <= 140; speed += 10) {
+  for (double speed = kFirstSpeed; speed <= kLastSpeed; speed += kSpeedStep) {
     const auto more = realistic_contacts(scene, speed, 40).conditions;
     conditions.insert(conditions.end(), more.begin(), more.end());
   }
@@ -100,22 +141,25 @@ double seconds_per_evaluation() {
   ContactArrays arrays(conditions, scene.solid, scene.options);
   const FlankContactBatch batch(contact_model(scene));
   constexpr int kRounds = 40;
-  const auto start = Clock::now();
+  const double start = processor_seconds();
   for (int round = 0; round < kRounds; ++round) {
-    for (std::size_t first = 0; first < arrays.size(); first += 256) {
-      batch.solve(arrays.geometries(), first, 256, arrays.conditions(first),
-                  arrays.friction(first));
+    for (std::size_t first = 0; first < arrays.size(); first += evaluation.contacts) {
+      batch.solve(arrays.geometries(), first, evaluation.contacts, arrays.conditions(first),
+                  evaluation.all_figures ? arrays.results(first) : arrays.friction(first),
+                  evaluation.digits);
     }
   }
-  return seconds_since(start) / (static_cast<double>(arrays.size()) * kRounds);
+  return (processor_seconds() - start) / (static_cast<double>(arrays.size()) * kRounds);
 }
 
+/// Counts the evaluations of the curve's points; those of the search for the ends of branches, a
+/// seventh more, are not known.
 Work sweep() {
   const Scene scene = reference_scene();
   std::vector<double> speeds;
   for (int half = 40; half <= 280; ++half) speeds.push_back(0.5 * half / 3.6);
   Work out;
-  const auto start = Clock::now();
+  const double start = processor_seconds();
   for (const SweepDirection direction : {SweepDirection::kUp, SweepDirection::kDown}) {
     SweepOptions options;
     options.direction = direction;
@@ -125,26 +169,39 @@ Work sweep() {
       out.marched += at.result->method == SteadyStateMethod::kMarch;
     }
   }
-  out.seconds = seconds_since(start);
+  out.processor_seconds = processor_seconds() - start;
   return out;
 }
 
 int run(const std::string& path, int fluids, int turns) {
   const std::vector<Scene> scenes = candidates(fluids);
   const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  std::vector<double> evaluation, per_point, over_threads, sweep_ratio, rate, contacts;
+  std::vector<double> evaluation, of_sweep, per_point, over_threads, sweep_ratio, sweep_units, rate,
+      contact_figures, contact_figures_share;
   Work alone, swept;
   for (int turn = 0; turn < turns; ++turn) {
-    evaluation.push_back(seconds_per_evaluation());
+    const auto evaluate = [&] {
+      evaluation.push_back(seconds_per_evaluation(kBatch));
+      of_sweep.push_back(seconds_per_evaluation(kOfSweep));
+    };
+    const auto around = [](const std::vector<double>& values) {
+      return 0.5 * (values.back() + values[values.size() - 2]);
+    };
+    evaluate();
     alone = screen(scenes, 1);
     const Work together = screen(scenes, std::min(4, processors));
+    contact_figures.push_back(seconds_of_contact_figures(scenes));
+    contact_figures_share.push_back(contact_figures.back() * static_cast<double>(alone.points) /
+                                    alone.processor_seconds);
     swept = sweep();
-    evaluation.push_back(seconds_per_evaluation());
-    const double unit = 0.5 * (evaluation.back() + evaluation[evaluation.size() - 2]);
-    per_point.push_back(alone.seconds / static_cast<double>(alone.points) / unit);
+    evaluate();
+    const double unit = around(evaluation);
+    per_point.push_back(alone.processor_seconds / static_cast<double>(alone.points) / unit);
     rate.push_back(static_cast<double>(alone.points) / alone.seconds);
     over_threads.push_back(alone.seconds / together.seconds);
-    sweep_ratio.push_back(swept.seconds / (static_cast<double>(swept.contacts) * unit));
+    const double per_contact = swept.processor_seconds / static_cast<double>(swept.contacts);
+    sweep_ratio.push_back(per_contact / around(of_sweep));
+    sweep_units.push_back(per_contact / unit);
   }
   const auto mean = [](long sum, long count) {
     return static_cast<double>(sum) / static_cast<double>(count);
@@ -158,8 +215,12 @@ int run(const std::string& path, int fluids, int turns) {
        "share",
        {}},
       {"screening, points a second on one thread", median(rate), "1/s", 40000.0, false},
+      {"screening, contact figures of a point", 1e6 * median(contact_figures), "us", 10.0},
+      {"screening, contact figures over the point without", median(contact_figures_share), "-", {}},
       {"sweep 20 to 140 km/h by 0.5 both ways, over its friction evaluations alone",
-       median(sweep_ratio), "-", 3.0},
+       median(sweep_ratio), "-", 6.0},
+      {"sweep, one of its friction evaluations alone", 1e9 * median(of_sweep), "ns/contact", {}},
+      {"sweep, over as many batch evaluations", median(sweep_units), "-", {}},
       {"sweep, friction evaluations of a point", mean(swept.contacts, swept.points), "-", {}},
       {"sweep, points marched", mean(swept.marched, swept.points), "share", {}}};
   if (processors >= 4) {

@@ -1297,6 +1297,8 @@ int main(int argc, char** argv) try {
       {"estimates", measure_estimates}};
   const std::string path = argc > 1 ? argv[1] : "build/benchmark/results.json";
   const std::vector<std::string> wanted(argv + std::min(argc, 2), argv + argc);
+  std::printf("%s\n", tribodyn::machine_name().c_str());
+  std::fflush(stdout);
   for (const auto& [name, measure] : parts) {
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), name) == wanted.end()) continue;
     std::vector<tribodyn::Measurement> figures;
