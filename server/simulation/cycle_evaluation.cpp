@@ -111,6 +111,16 @@ void check_cycle_lubricants(const v1::EvaluateCycleRequest& request, Violations&
   violations.add("lubricants", "{} lubricants; allowed: 1 to {}", lubricants, kMostCycleLubricants);
 }
 
+void check_map_tolerance(const v1::EvaluateCycleRequest& request, Violations& violations) {
+  if (!request.point_by_point() || request.map_tolerance() == 0) return;
+  violations.add(
+      "map_tolerance",
+      "map_tolerance = {} has no effect: with point_by_point every piece is solved and no "
+      "map is made; leave one of the two unset, or set tolerance, which is the error of "
+      "each point",
+      request.map_tolerance());
+}
+
 /// Returns the pieces of the cycle, or none and a violation if they are too many.
 std::vector<CyclePiece> cut_cycle(const v1::EvaluateCycleRequest& request, Violations& violations) {
   const DriveCycle cycle = requested_cycle(request);
@@ -342,6 +352,7 @@ std::optional<CycleEvaluation> read_cycle(const v1::EvaluateCycleRequest& reques
   const std::size_t before = violations.size();
   check_message(request, "", violations);
   check_cycle_lubricants(request, violations);
+  check_map_tolerance(request, violations);
   check_cycle(request, violations);
   const bool is_valid = violations.size() == before;
   CycleEvaluation out;

@@ -243,6 +243,8 @@ out_has 'own.csv, sump 40.42 to 89.58 C: mesh loss'
 expect 2 cycle
 expect 2 cycle paper-fluid-1 --map-tolerance 1
 expect 2 cycle paper-fluid-1 --map-tolerance 0
+expect 1 cycle paper-fluid-1 --cycle "$folder/own.csv" --point-by-point --map-tolerance 1e-3
+err_has 'map-tolerance = 0.001 has no effect: with point_by_point'
 
 # Measured profiles: six are one surface, whose parameters move with the sampling interval.
 for place in heel middle toe; do

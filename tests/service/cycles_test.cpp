@@ -255,6 +255,18 @@ TEST(EvaluateCycle, NamesFieldAndRowOfAllThatIsWrongWithACycle) {
                         "2 s after 0 km/h is an acceleration of 54.17 m/s2; allowed: -50 to 50"));
 }
 
+TEST(EvaluateCycle, RefusesAMapToleranceWhereNoMapIsMade) {
+  v1::EvaluateCycleRequest request = short_request();
+  request.set_map_tolerance(1e-3);
+  EXPECT_EQ(cycle_violations(request), "");
+  request.set_point_by_point(true);
+  EXPECT_THAT(cycle_violations(request),
+              HasSubstr("map_tolerance: map_tolerance = 0.001 has no effect: with point_by_point"));
+  request.clear_map_tolerance();
+  request.set_tolerance(1e-3);
+  EXPECT_EQ(cycle_violations(request), "") << "the error of each point counts for both";
+}
+
 TEST(EvaluateCycle, TellsAFewOfManyWrongPlaces) {
   v1::EvaluateCycleRequest request = nedc_request({"lubricants/paper-fluid-1"});
   request.clear_named_cycle();

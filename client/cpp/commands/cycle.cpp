@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,7 @@ namespace {
 struct CycleFlags {
   std::string cycle = "nedc";  ///< or a file
   v1::EvaluateCycleRequest request;
-  double map_tolerance = 2e-3;
+  std::optional<double> map_tolerance;
   std::string csv_path, plot_path;
 };
 
@@ -121,7 +122,7 @@ std::string with_lines(std::string text, const std::string& path, const std::vec
 
 v1::EvaluateCycleResponse evaluated(const CycleFlags& flags, Connection& connection) {
   v1::EvaluateCycleRequest request = flags.request;
-  request.set_map_tolerance(flags.map_tolerance);
+  if (flags.map_tolerance) request.set_map_tolerance(*flags.map_tolerance);
   if (flags.cycle == "nedc") {
     request.set_named_cycle(v1::NAMED_CYCLE_NEDC);
     return connection.evaluate_cycle(request);
@@ -223,8 +224,9 @@ Command cycle_command() {
     if (flags->request.lubricants().empty()) {
       complaints.emplace_back("give a lubricant: tribodyn cycle paper-fluid-1");
     }
-    if (!(flags->map_tolerance >= 1e-5 && flags->map_tolerance <= 0.1)) {
-      complaints.push_back("--map-tolerance: " + significant(flags->map_tolerance) +
+    const std::optional<double>& tolerance = flags->map_tolerance;
+    if (tolerance && !(*tolerance >= 1e-5 && *tolerance <= 0.1)) {
+      complaints.push_back("--map-tolerance: " + significant(*tolerance) +
                            "; allowed: 1e-5 to 0.1");
     }
   };

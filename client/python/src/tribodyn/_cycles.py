@@ -59,9 +59,10 @@ class Cycles(Session):
         speed_kilometres_per_hour (0 to 400) and, optionally, ascent_angle_degrees and
         sump_temperature_celsius: 2 to 10,000 rows, at most 20,000 s. Points are quasi-steady, from an
         adaptive map: ``map_tolerance`` (1e-5 to 0.1; None: 2e-3) is the wanted relative error of the
-        energy lost, or each piece of at most 1 s is solved, ``point_by_point``. ``attrs`` holds
-        ``whole``, the energies with their errors, and ``pieces``, speed, torque and loss over time.
-        A lubricant that the model refuses has NaN, and the reason in ``status``."""
+        energy lost; or each piece of at most 1 s is solved, ``point_by_point``, without a map
+        tolerance. ``attrs`` holds ``whole``, the energies with their errors, and ``pieces``, speed,
+        torque and loss over time. A lubricant that the model refuses has NaN, and the reason in
+        ``status``."""
         arguments = Arguments()
         request = pb.EvaluateCycleRequest(
             lubricants=full_names("lubricants", lubricants),
