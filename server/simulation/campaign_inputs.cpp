@@ -22,7 +22,7 @@ namespace {
 /// Largest number of conditions that share a prepared scene, and so are computed between two looks
 /// at the clock: some 20 ms.
 constexpr std::size_t kMaximumGroup = 256;
-constexpr std::size_t kMaximumDifferentiatedGroup = 16;  // the same with elasticities: some 15 ms
+constexpr std::size_t kMaximumDifferentiatedGroup = 16;  // the same with elasticities: some 3 ms
 constexpr std::size_t kMaximumAttributeName = 63;
 
 /// Moves the columns of candidates out of a campaign.

@@ -21,6 +21,8 @@ const std::map<std::string_view, OrbitFigure>& differentiated_figures() {
       {"inefficiency_rms_percent", OrbitFigure::kInefficiencyRms},
       {kDefaultElasticityFigure, OrbitFigure::kInefficiencyEnergyMean},
       {"mesh_loss_power_watts", OrbitFigure::kMeshLossPower},
+      {"mesh_loss_torque_newton_metres", OrbitFigure::kMeshLossTorque},
+      {"pinion_friction_torque_mean_newton_metres", OrbitFigure::kPinionFrictionTorque},
       {"film_ratio_mean", OrbitFigure::kFilmRatio},
       {"contact_temperature_mean_kelvin", OrbitFigure::kContactTemperature},
       {"dynamic_transmission_error_minimum_metres", OrbitFigure::kTransmissionErrorMinimum},
@@ -28,7 +30,7 @@ const std::map<std::string_view, OrbitFigure>& differentiated_figures() {
   return out;
 }
 
-/// Returns the names of PointSensitivities for parameters of candidates.
+/// Returns the names of PointSensitivities for parameters of candidates, gear set and conditions.
 const std::map<std::string_view, std::string_view>& scene_parameter_names() {
   static const std::map<std::string_view, std::string_view> out = {
       {"lubricant.vogel_viscosity_prefactor_pascal_seconds", "lubricant.vogel_viscosity_prefactor"},
@@ -66,7 +68,17 @@ const std::map<std::string_view, std::string_view>& scene_parameter_names() {
       {"surface.asperity_radius_metres", "roughness.asperity_radius"},
       {"surface.composite_rms_height_metres", "roughness.composite_rms_height"},
       {"surface.tribofilm_shear_strength_pascals", "boundary.tribofilm_shear_strength"},
-      {"surface.asperity_friction_coefficient", "boundary.asperity_friction_coefficient"}};
+      {"surface.asperity_friction_coefficient", "boundary.asperity_friction_coefficient"},
+      {"gear_set.youngs_modulus_pascals", "solid.youngs_modulus"},
+      {"gear_set.poissons_ratio", "solid.poissons_ratio"},
+      {"gear_set.solid_thermal_conductivity_watts_per_metre_kelvin", "solid.thermal_conductivity"},
+      {"gear_set.solid_density_kilograms_per_cubic_metre", "solid.density"},
+      {"gear_set.solid_specific_heat_capacity_joules_per_kilogram_kelvin",
+       "solid.specific_heat_capacity"},
+      {"sump_temperature_celsius", "sump_temperature"},
+      {"inlet_temperature_rise_kelvin", "inlet_temperature_rise"},
+      {"speed_kilometres_per_hour", "vehicle_speed"},
+      {"wheel_torque_newton_metres", "wheel_torque"}};
   return out;
 }
 

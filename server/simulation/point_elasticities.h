@@ -11,7 +11,7 @@
 
 namespace tribodyn::server {
 
-/// A figure, and a parameter of candidates by which it is differentiated.
+/// A figure, and a parameter by which it is differentiated.
 struct Elasticity {
   std::string figure;     ///< as in EvaluatePointsRequest
   std::string parameter;  ///< likewise

@@ -19,7 +19,7 @@ namespace tribodyn::server {
 
 /// Largest number of points of one request: candidates times conditions. They take 0.1 to 1 s.
 inline constexpr int kMaximumEvaluatedPoints = 2000;
-/// The same with elasticities. They take about 0.5 s.
+/// The same with elasticities. They take about 0.1 s.
 inline constexpr int kMaximumDifferentiatedPoints = 500;
 
 /// Points to evaluate: every candidate at every condition.

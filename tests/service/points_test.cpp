@@ -4,13 +4,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/refusal.h"
 #include "core/study/operating_point.h"
 #include "server/contract/resource_names.h"
+#include "server/mapping/from_core.h"
 #include "server/simulation/point_evaluation.h"
 #include "server/simulation/simulation_inputs.h"
 #include "tests/service/support.h"
@@ -62,7 +66,8 @@ std::string violations_of(const v1::EvaluatePointsRequest& request) {
   return out;
 }
 
-/// Returns the point of a candidate at a condition as a simulation finds it.
+/// Returns the point of a candidate at a condition as a simulation finds it, with sensitivities if
+/// the request has elasticities.
 PointResult simulated(const v1::EvaluatePointsRequest& request, int candidate, int condition) {
   v1::Simulation simulation;
   simulation.set_lubricant(request.lubricant());
@@ -70,6 +75,8 @@ PointResult simulated(const v1::EvaluatePointsRequest& request, int candidate, i
   simulation.set_sump_temperature_celsius(at.sump_temperature_celsius());
   simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(
       at.speed_kilometres_per_hour());
+  simulation.mutable_operating_point()->set_sensitivities(!request.elasticity_parameters().empty());
+  simulation.mutable_solver_options()->set_tolerance(request.tolerance());
   Violations violations;
   auto inputs = read_simulation(simulation, seed_lookup(), "", violations);
   if (!inputs) throw std::runtime_error(violations.front().description);
@@ -213,6 +220,89 @@ TEST(EvaluatePoints, EveryParameterOfACandidateHasElasticities) {
     const bool is_of_another_law = each.parameter().find("improved_yasutomi") != std::string::npos;
     EXPECT_TRUE(std::isfinite(each.values(0))) << each.parameter();
     EXPECT_EQ(each.values(0) == 0, is_of_another_law) << each.parameter();
+  }
+}
+
+/// Figures and parameters of elasticities, with their names in the sensitivities of a point.
+constexpr std::pair<const char*, const char*> kDifferentiatedFigures[] = {
+    {"inefficiency_rms_percent", "inefficiency_rms_percent"},
+    {"inefficiency_energy_mean_percent", "inefficiency_energy_mean_percent"},
+    {"mesh_loss_power_watts", "mesh_loss_power_watts"},
+    {"mesh_loss_torque_newton_metres", "mesh_loss_torque_newton_metres"},
+    {"pinion_friction_torque_mean_newton_metres", "pinion_friction_torque_newton_metres.mean"},
+    {"film_ratio_mean", "film_ratio.mean"},
+    {"contact_temperature_mean_kelvin", "contact_temperature_kelvin.mean"},
+    {"dynamic_transmission_error_minimum_metres", "dynamic_transmission_error_metres.minimum"},
+    {"dynamic_transmission_error_maximum_metres", "dynamic_transmission_error_metres.maximum"}};
+constexpr std::pair<const char*, const char*> kDifferentiatedParameters[] = {
+    {"lubricant.vogel_viscosity_prefactor_pascal_seconds", "lubricant.vogel_viscosity_prefactor"},
+    {"lubricant.vogel_temperature_coefficient_kelvin", "lubricant.vogel_temperature_coefficient"},
+    {"lubricant.vogel_reference_temperature_kelvin", "lubricant.vogel_reference_temperature"},
+    {"lubricant.pressure_viscosity_coefficient_per_pascal",
+     "lubricant.pressure_viscosity_coefficient"},
+    {"lubricant.pressure_viscosity_temperature_kelvin", "lubricant.pressure_viscosity_temperature"},
+    {"lubricant.relaxation_time_seconds", "lubricant.relaxation_time"},
+    {"lubricant.havriliak_negami_alpha", "lubricant.havriliak_negami_alpha"},
+    {"lubricant.havriliak_negami_beta", "lubricant.havriliak_negami_beta"},
+    {"lubricant.rheology_reference_temperature_kelvin", "lubricant.rheology_reference_temperature"},
+    {"lubricant.limiting_shear_stress_at_zero_pressure_pascals",
+     "lubricant.limiting_shear_stress_at_zero_pressure"},
+    {"lubricant.limiting_shear_stress_coefficient", "lubricant.limiting_shear_stress_coefficient"},
+    {"lubricant.thermal_conductivity_watts_per_metre_kelvin", "lubricant.thermal_conductivity"},
+    {"lubricant.density_at_zero_kelvin_kilograms_per_cubic_metre",
+     "lubricant.density_at_zero_kelvin"},
+    {"lubricant.density_slope_kilograms_per_cubic_metre_kelvin",
+     "lubricant.density_temperature_slope"},
+    {"surface.asperity_density_per_square_metre", "roughness.asperity_density"},
+    {"surface.asperity_radius_metres", "roughness.asperity_radius"},
+    {"surface.composite_rms_height_metres", "roughness.composite_rms_height"},
+    {"surface.tribofilm_shear_strength_pascals", "boundary.tribofilm_shear_strength"},
+    {"surface.asperity_friction_coefficient", "boundary.asperity_friction_coefficient"},
+    {"gear_set.youngs_modulus_pascals", "solid.youngs_modulus"},
+    {"gear_set.poissons_ratio", "solid.poissons_ratio"},
+    {"gear_set.solid_thermal_conductivity_watts_per_metre_kelvin", "solid.thermal_conductivity"},
+    {"gear_set.solid_density_kilograms_per_cubic_metre", "solid.density"},
+    {"gear_set.solid_specific_heat_capacity_joules_per_kilogram_kelvin",
+     "solid.specific_heat_capacity"},
+    {"sump_temperature_celsius", "sump_temperature"},
+    {"inlet_temperature_rise_kelvin", "inlet_temperature_rise"},
+    {"speed_kilometres_per_hour", "vehicle_speed"},
+    {"wheel_torque_newton_metres", "wheel_torque"}};
+
+TEST(EvaluatePoints, ElasticitiesOfEveryFigureByEveryParameterAreThoseOfThePoint) {
+  constexpr std::size_t kFigures = std::size(kDifferentiatedFigures);
+  constexpr std::size_t kParameters = std::size(kDifferentiatedParameters);
+  v1::EvaluatePointsRequest request = request_of_candidates();
+  request.set_tolerance(1e-6);
+  for (const auto& [name, of_point] : kDifferentiatedFigures) request.add_elasticity_figures(name);
+  for (const auto& [name, of_point] : kDifferentiatedParameters) {
+    request.add_elasticity_parameters(name);
+  }
+  const v1::EvaluatePointsResponse out = evaluate(request);
+  ASSERT_EQ(static_cast<std::size_t>(out.elasticities_size()), kFigures * kParameters);
+  for (const int row : {0, 8, 16}) {
+    const v1::PointSensitivities alone =
+        to_message(simulated(request, row / 6, row % 6), 0).sensitivities();
+    ASSERT_EQ(static_cast<std::size_t>(alone.figures_size()), kFigures);
+    ASSERT_EQ(static_cast<std::size_t>(alone.parameters_size()), kParameters);
+    for (int f = 0; f < alone.figures_size(); ++f) {
+      for (const v1::ParameterSensitivity& parameter : alone.parameters()) {
+        const auto named = [](const std::string& name) {
+          return [&name](const auto& each) { return each.second == name; };
+        };
+        const auto figure = std::ranges::find_if(kDifferentiatedFigures, named(alone.figures(f)));
+        const auto by =
+            std::ranges::find_if(kDifferentiatedParameters, named(parameter.parameter()));
+        const auto place =
+            (figure - kDifferentiatedFigures) * kParameters + (by - kDifferentiatedParameters);
+        const v1::ElasticityColumn& screened = out.elasticities(static_cast<int>(place));
+        ASSERT_EQ(screened.figure(), figure->first);
+        ASSERT_EQ(screened.parameter(), by->first);
+        EXPECT_NEAR(screened.values(row), parameter.elasticities(f),
+                    1e-9 * std::abs(parameter.elasticities(f)))
+            << screened.figure() << " by " << screened.parameter() << " in row " << row;
+      }
+    }
   }
 }
 

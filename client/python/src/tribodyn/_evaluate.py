@@ -60,10 +60,12 @@ class Evaluations(Session):
         viscous_loss_power_watts, boundary_loss_power_watts, mean_friction_coefficient,
         maximum_pressure_maximum_pascals and flash_temperature_rise_maximum_kelvin, for two
         fifths of the time. ``elasticities`` names parameters, e.g.
-        "lubricant.relaxation_time_seconds", and adds a column "elasticity.FIGURE.PARAMETER" for each
-        of ``elasticity_figures`` (none: inefficiency_energy_mean_percent): the relative change of the
-        figure over that of the parameter, exact to rounding; NaN at a fold. That takes some
-        0.9 ms a point.
+        "lubricant.relaxation_time_seconds", "gear_set.youngs_modulus_pascals",
+        "sump_temperature_celsius", "speed_kilometres_per_hour" or "wheel_torque_newton_metres", and
+        adds a column "elasticity.FIGURE.PARAMETER" for each of ``elasticity_figures`` (none:
+        inefficiency_energy_mean_percent): the relative change of the figure over that of the
+        parameter, temperatures from 0 K, exact to rounding; NaN at a fold. A point then takes four
+        to seven times as long.
         """
         given, rows = rows_with(table, parameters, _is_known)
         evaluation = _Evaluation(

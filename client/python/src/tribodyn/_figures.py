@@ -29,6 +29,12 @@ def _columns(kind: Any) -> dict[str, int]:
 _OF_POINTS = _columns(EvaluatePointsResponse)
 _USUAL_FIGURES = [name for name, number in _OF_POINTS.items() if number < _FIRST_CONTACT_FIGURE]
 _CONTACT_FIGURES = [name for name, number in _OF_POINTS.items() if number >= _FIRST_CONTACT_FIGURE]
+_OF_CONDITIONS = (
+    "sump_temperature_celsius",
+    "inlet_temperature_rise_kelvin",
+    "speed_kilometres_per_hour",
+    "wheel_torque_newton_metres",
+)
 USUAL_FIGURE = "inefficiency_energy_mean_percent"  # by which candidates are ranked
 
 # Columns of a campaign of a rig: its conditions, which the server computes, and its figures.
@@ -43,6 +49,13 @@ RIG_FIGURES = [
     ),
 ]
 USUAL_RIG_FIGURE = "traction_coefficient"
+
+
+def _path(arguments: Arguments, name: str) -> str:
+    """Returns the path of a parameter. The server knows those that candidates have in common."""
+    if name in _OF_CONDITIONS or name.startswith("gear_set."):
+        return name
+    return parameter_path(arguments, "elasticities", name)
 
 
 @dataclass(frozen=True)
@@ -63,7 +76,7 @@ class FigureChoice:
         """Returns what the arguments of a method state."""
         parameters = [elasticities] if isinstance(elasticities, str) else elasticities
         figures = [elasticity_figures] if isinstance(elasticity_figures, str) else elasticity_figures
-        paths = (parameter_path(arguments, "elasticities", name) for name in parameters)
+        paths = (_path(arguments, name) for name in parameters)
         return FigureChoice(contact_figures, tuple(dict.fromkeys(paths)), tuple(figures))
 
     @staticmethod
