@@ -146,6 +146,7 @@ std::optional<BranchEnd> branch_end(PreparedScene& scene, double ascent_angle, P
   options.tolerance = std::max(options.tolerance, 0.01 * kSameBranchDistance);
   options.history = {};
   options.probe_coexisting_response = false;
+  options.sensitivities = false;
   Bracket bracket{before, after, after.vehicle_speed,
                   only_marched ? std::numeric_limits<long>::max() : kMostMarched};
   if (!only_marched) {

@@ -57,6 +57,7 @@ std::string not_set_text(const Constraint& constraint);
 
 // These limits bound the work and memory of one request.
 inline constexpr int kMaximumCurvePoints = 1000;
+inline constexpr int kMaximumDifferentiatedCurvePoints = 300;  ///< 10 kB each at most: 3 MB
 inline constexpr int kMaximumHistoryColumns = 100;
 inline constexpr double kMaximumHistoryValues = 2e7;  ///< rows times columns, 8 bytes each: 160 MB
 inline constexpr double kMaximumCurveMeshCycles = 1e7;  ///< points times maximum_mesh_cycles

@@ -13,9 +13,10 @@ struct Work {
 };
 
 constexpr double kPreparationSeconds = 0.26e-3;  // [s] for each scene
-constexpr double kSensitivitySeconds = 0.2e-3;   // [s] for each point, at the usual tolerance
-constexpr double kContactFiguresFactor = 1.4;    // of a screened point (measured)
-constexpr double kElasticitySeconds = 0.1e-3;    // [s] for each screened point (measured)
+// Of a point by shooting, also screened. Measured: 2 to 4.4, where flanks part 1.5 to 2.7, at
+// tolerances of 1e-5 to 1e-3.
+constexpr double kSensitivityFactor = 2.5;
+constexpr double kContactFiguresFactor = 1.4;  // of a screened point (measured)
 constexpr double kUsualTolerance = 1e-3;
 constexpr Work kQuasiStaticPoint{340, 0.25e-6};  // at the usual tolerance
 constexpr double kQuasiStaticOrder = 0.4;        // exponent of their growth with 1 / tolerance
@@ -52,20 +53,20 @@ double times_sharper(const v1::SolverOptions& solver) {
 }
 
 void add_shot_point(double speed_kilometres_per_hour, const v1::SolverOptions& solver,
-                    v1::CostEstimate& out) {
+                    bool sensitivities, v1::CostEstimate& out) {
   const double solutions = kShotSolutions * std::pow(times_sharper(solver), kShotOrder) +
                            kShotSolutionsAtOneKilometrePerHour / speed_kilometres_per_hour;
-  add({solutions, kShotSecondsEach}, 1, out);
+  add({solutions, kShotSecondsEach * (sensitivities ? kSensitivityFactor : 1)}, 1, out);
 }
 
 void add_point(double speed_kilometres_per_hour, v1::PointModel model,
-               const v1::SolverOptions& solver, v1::CostEstimate& out) {
+               const v1::SolverOptions& solver, bool sensitivities, v1::CostEstimate& out) {
   if (model == v1::POINT_MODEL_QUASI_STATIC) {
     add(kQuasiStaticPoint, std::pow(times_sharper(solver), kQuasiStaticOrder), out);
   } else if (solver.method() == v1::STEADY_STATE_METHOD_MARCH) {
     add(kMarchedCycle, std::min<double>(kUsualMarchedCycles, solver.maximum_mesh_cycles()), out);
   } else {
-    add_shot_point(speed_kilometres_per_hour, solver, out);
+    add_shot_point(speed_kilometres_per_hour, solver, sensitivities, out);
   }
 }
 
@@ -82,7 +83,9 @@ double branch_following_seconds(const google::protobuf::RepeatedField<double>& s
 void add_curve(const v1::InefficiencyCurveStudy& curve, const v1::SolverOptions& solver,
                v1::CostEstimate& out) {
   const auto& speeds = curve.speeds_kilometres_per_hour();
-  for (const double speed : speeds) add_point(speed, curve.model(), solver, out);
+  for (const double speed : speeds) {
+    add_point(speed, curve.model(), solver, curve.sensitivities(), out);
+  }
   if (curve.model() == v1::POINT_MODEL_QUASI_STATIC || curve.independent_points()) return;
   out.set_processor_seconds(out.processor_seconds() + branch_following_seconds(speeds));
 }
@@ -118,11 +121,8 @@ void add_study(const v1::Simulation& effective, v1::CostEstimate& out) {
   }
   const v1::OperatingPointStudy& point = effective.operating_point();
   const double speed = speed_of(point);
-  add_point(speed, point.model(), solver, out);
-  if (point.sensitivities()) {
-    out.set_processor_seconds(out.processor_seconds() + kSensitivitySeconds);
-  }
-  if (point.probe_coexisting_response()) add_point(speed, point.model(), solver, out);
+  add_point(speed, point.model(), solver, point.sensitivities(), out);
+  if (point.probe_coexisting_response()) add_point(speed, point.model(), solver, false, out);
   if (point.has_history())
     add_history(point.history(), solver.method() == v1::STEADY_STATE_METHOD_MARCH, out);
 }
@@ -149,13 +149,10 @@ v1::CostEstimate estimate_screening_cost(const v1::Simulation& effective, int ca
                                          const ScreenedExtras& extras) {
   v1::CostEstimate out;
   for (const double speed : speeds_kilometres_per_hour) {
-    add_shot_point(speed, effective.solver_options(), out);
+    add_shot_point(speed, effective.solver_options(), extras.elasticities, out);
   }
   double seconds = out.processor_seconds();
   if (extras.contact) seconds *= kContactFiguresFactor;
-  if (extras.elasticities) {
-    seconds += kElasticitySeconds * static_cast<double>(speeds_kilometres_per_hour.size());
-  }
   out.set_processor_seconds(seconds);
   out.set_contact_solutions(candidates * out.contact_solutions());
   out.set_processor_seconds(rounded(candidates * out.processor_seconds()));

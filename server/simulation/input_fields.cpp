@@ -109,7 +109,7 @@ constexpr InputFields kInputFields[] = {
     {"InefficiencyCurveStudy",
      "speeds_kilometres_per_hour first_speed_kilometres_per_hour "
      "last_speed_kilometres_per_hour speed_step_kilometres_per_hour direction "
-     "ascent_angle_degrees model start independent_points"},
+     "ascent_angle_degrees model start independent_points sensitivities"},
 };
 
 std::unordered_map<const FieldDescriptor*, InputRole> roles_by_field() {

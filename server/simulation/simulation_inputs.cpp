@@ -51,18 +51,18 @@ void fill_solver(v1::SolverOptions* solver) {
 }
 
 template <class StudyMessage>
-void fill_model_and_start(StudyMessage* study) {
+void fill_common_fields(StudyMessage* study) {
   if (study->model() == v1::POINT_MODEL_UNSPECIFIED) {
     study->set_model(v1::POINT_MODEL_AUTOMATIC);
   }
   if (study->start() == v1::POINT_START_UNSPECIFIED) {
     study->set_start(v1::POINT_START_QUASI_STATIC_EQUILIBRIUM);
   }
+  if (!study->sensitivities()) study->clear_sensitivities();  // false and unset: one request
 }
 
 void fill_operating_point(v1::OperatingPointStudy* study) {
-  fill_model_and_start(study);
-  if (!study->sensitivities()) study->clear_sensitivities();  // false and unset: one request
+  fill_common_fields(study);
   if (!study->has_history()) return;
   v1::HistoryRequest* history = study->mutable_history();
   if (history->mesh_cycles() == 0) history->set_mesh_cycles(kDefaultHistoryCycles);
@@ -72,7 +72,7 @@ void fill_operating_point(v1::OperatingPointStudy* study) {
 }
 
 void fill_curve(v1::InefficiencyCurveStudy* study) {
-  fill_model_and_start(study);
+  fill_common_fields(study);
   if (study->direction() == v1::SWEEP_DIRECTION_UNSPECIFIED && !study->independent_points()) {
     study->set_direction(v1::SWEEP_DIRECTION_UP);
   }
@@ -276,6 +276,7 @@ Study study(const SimulationInputs& inputs) {
   out.options.direction =
       message.direction() == v1::SWEEP_DIRECTION_DOWN ? SweepDirection::kDown : SweepDirection::kUp;
   out.options.point = point_options(solver, message.model(), message.start());
+  out.options.point.sensitivities = message.sensitivities();
   out.options.independent_points = message.independent_points();
   return out;
 }

@@ -166,10 +166,18 @@ void check_curve(const v1::InefficiencyCurveStudy& study, const v1::SolverOption
   if (!explicit_speeds) check_speed_range(study, path, violations);
   const double points =
       explicit_speeds ? study.speeds_kilometres_per_hour_size() : grid_size(study);
+  const std::string density =
+      explicit_speeds ? speeds : join_path(path, "speed_step_kilometres_per_hour");
   if (points > kMaximumCurvePoints) {
-    violations.add(explicit_speeds ? speeds : join_path(path, "speed_step_kilometres_per_hour"),
-                   "{} points; allowed: at most {} (work limit)", points, kMaximumCurvePoints);
+    violations.add(density, "{} points; allowed: at most {} (work limit)", points,
+                   kMaximumCurvePoints);
     return;
+  }
+  if (study.sensitivities() && points > kMaximumDifferentiatedCurvePoints) {
+    violations.add(density,
+                   "{} points with sensitivities; allowed: at most {}, which one answer holds; "
+                   "divide the curve, or leave sensitivities unset",
+                   points, kMaximumDifferentiatedCurvePoints);
   }
   if (explicit_speeds) {
     const auto& list = study.speeds_kilometres_per_hour();

@@ -654,6 +654,10 @@ expect 0 sensitivities paper-fluid-1 --speed 75
 out_has 'lubricant pressure viscosity coefficient .*\|#'
 expect 0 point --lubricant paper-fluid-1 --speed 100 --sensitivities
 out_has '^Sensitivities'
+expect 0 curve --lubricant paper-fluid-1 --speeds 60,100 --sensitivities --no-uncertainty --csv "$folder/slopes.csv"
+out_has '^Sensitivities of the inefficiency'
+out_has '^ *lubricant pressure viscosity coefficient +-?[0-9.]+ +-?[0-9.]+$'
+head -1 "$folder/slopes.csv" | grep -q ',elasticity.film_ratio.mean.wheel_torque,' || fail "tribodyn curve --csv: no sensitivities"
 
 echo "--- screening on a rig in place of the axle"
 {

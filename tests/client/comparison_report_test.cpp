@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "client/cpp/plot/comparison_plot.h"
 #include "client/cpp/plot/curve_plot.h"
@@ -13,6 +15,7 @@
 #include "client/cpp/report/explanation_report.h"
 #include "client/cpp/report/report_page.h"
 #include "client/cpp/report/sensitivity_report.h"
+#include "client/cpp/text/csv.h"
 #include "tests/client/sample_simulations.h"
 
 namespace tribodyn::client {
@@ -246,6 +249,58 @@ TEST(SensitivityReport, SortsParametersBySizeAndDrawsBarsToBothSides) {
   EXPECT_LT(text.find("lubricant large and negative"), text.find("lubricant small"));
   EXPECT_TRUE(has_text(text, "############|"));
   EXPECT_TRUE(has_text(text, "|#\n"));
+}
+
+/// A curve over 60, 70 and 80 km/h: at 70 without sensitivities.
+v1::Simulation differentiated_curve() {
+  v1::Simulation out;
+  out.mutable_inefficiency_curve()->set_sensitivities(true);
+  for (const double speed : {60.0, 70.0, 80.0}) {
+    v1::CurvePoint& point = *out.mutable_result()->add_points();
+    point.set_speed_kilometres_per_hour(speed);
+    v1::PointResult& result = *point.mutable_result();
+    if (speed == 70) {
+      v1::RangeWarning& warning = *result.add_warnings();
+      warning.set_code("NO_SENSITIVITIES");
+      warning.set_message("it is marched");
+      continue;
+    }
+    v1::PointSensitivities& sensitivities = *result.mutable_sensitivities();
+    sensitivities.add_figures("inefficiency_energy_mean_percent");
+    sensitivities.add_values(1.2);
+    for (const auto& [name, elasticity] :
+         {std::pair("lubricant.small", 1e-3 * speed), std::pair("wheel_torque", -1e-2 * speed)}) {
+      v1::ParameterSensitivity& parameter = *sensitivities.add_parameters();
+      parameter.set_parameter(name);
+      parameter.add_derivatives(7);
+      parameter.add_elasticities(elasticity);
+    }
+  }
+  return out;
+}
+
+TEST(CurveSensitivityReport, HasTheElasticitiesBySpeedLargestFirstAndWhySpeedsHaveNone) {
+  const std::string text = curve_sensitivity_report(differentiated_curve().result());
+  EXPECT_TRUE(has_text(text, "70 km/h: there are none: it is marched."));
+  EXPECT_TRUE(has_text(text, "wheel torque")) << text;
+  EXPECT_TRUE(has_text(text, "-0.8000")) << text;
+  EXPECT_TRUE(has_text(text, "0.0600")) << text;
+  EXPECT_LT(text.find("wheel torque"), text.find("lubricant small"));
+  EXPECT_TRUE(has_text(curve_report(differentiated_curve(), {}), "-0.8000"));
+}
+
+TEST(CurveSensitivityReport, CsvHasAColumnForEachFigureAndParameter) {
+  const std::vector<CsvLine> lines = read_csv(points_csv({differentiated_curve()}));
+  ASSERT_EQ(lines.size(), 4U);
+  const auto& header = lines.front().cells;
+  const auto column = std::find(header.begin(), header.end(),
+                                "elasticity.inefficiency_energy_mean_percent.wheel_torque");
+  ASSERT_NE(column, header.end());
+  const auto at = static_cast<std::size_t>(column - header.begin());
+  EXPECT_EQ(lines[1].cells[at], "-0.6");
+  EXPECT_EQ(lines[2].cells[at], "");
+  EXPECT_EQ(lines[3].cells[at], "-0.8");
+  EXPECT_EQ(lines[3].cells[at - 1], "7");
 }
 
 TEST(SensitivityReport, SaysWhyThereAreNone) {

@@ -20,6 +20,7 @@
 #include "core/study/operating_point.h"
 #include "core/study/operating_target.h"
 #include "core/study/orbit_record.h"
+#include "core/study/speed_sweep.h"
 #include "tests/support/cruise.h"
 #include "tests/support/random_place.h"
 #include "tests/support/reference_scene.h"
@@ -410,6 +411,59 @@ TEST(PointSensitivities, ChangeNothingElseAndAreTheFullModels) {
   const PointResult slow = solve_operating_point(reference_scene(), cruise(2), options);
   EXPECT_EQ(slow.model, PointModel::kFull);
   EXPECT_TRUE(slow.sensitivities.has_value());
+}
+
+TEST(SweepSensitivities, AreThoseOfThePointsOnTheBranchThatIsFollowed) {
+  const Scene scene = reference_scene();
+  SweepOptions options;
+  options.point.tolerance = 1e-6;
+  options.point.sensitivities = true;
+  const std::vector<double> speeds{30 / 3.6, 60 / 3.6, 70 / 3.6, 75 / 3.6, 100 / 3.6};
+  const std::vector<SweepPoint> curve = sweep_speed(scene, speeds, 0, options);
+  PointOptions point = options.point;
+  point.model = PointModel::kFull;
+  for (const SweepPoint& each : curve) {
+    const double speed = 3.6 * each.vehicle_speed;
+    OperatingCondition condition = cruise(speed);
+    condition.vehicle_speed = each.vehicle_speed;  // to the last bit
+    ASSERT_TRUE(each.result && each.result->sensitivities) << speed;
+    const PointResult same = solve_operating_point(scene, condition, point);
+    point.carried_state = carried_from(*each.result);
+    const auto& parameters = each.result->sensitivities->parameters;
+    ASSERT_EQ(same.sensitivities->parameters.size(), parameters.size());
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      EXPECT_EQ(parameters[i].derivative, same.sensitivities->parameters[i].derivative)
+          << parameters[i].parameter << " at " << speed;
+    }
+    // From a start of its own, on the same branch: up to the errors of both solutions.
+    PointOptions alone = point;
+    alone.carried_state.reset();
+    const PointResult own = solve_operating_point(scene, condition, alone);
+    ASSERT_EQ(own.contact_loss, each.result->contact_loss) << speed;
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      for (int f = 0; f < kOrbitFigures; ++f) {
+        const auto figure = static_cast<OrbitFigure>(f);
+        EXPECT_NEAR(own.sensitivities->elasticity(own.sensitivities->parameters[i], figure),
+                    each.result->sensitivities->elasticity(parameters[i], figure), 1e-7)
+            << parameters[i].parameter << " at " << speed;
+      }
+    }
+  }
+}
+
+TEST(SweepSensitivities, AreAbsentWithTheirCauseWhereAPointHasNone) {
+  SweepOptions options;
+  options.point.sensitivities = true;
+  options.point.method = SteadyStateMethod::kMarch;
+  options.point.tolerance = 1e-2;
+  for (const SweepPoint& each : sweep_speed(reference_scene(), {90 / 3.6, 100 / 3.6}, 0, options)) {
+    ASSERT_TRUE(each.result.has_value());
+    EXPECT_FALSE(each.result->sensitivities.has_value());
+    EXPECT_TRUE(std::ranges::any_of(each.result->warnings, [](const RangeWarning& warning) {
+      return warning.code == "NO_SENSITIVITIES" &&
+             warning.sentence.find("marched") != std::string::npos;
+    }));
+  }
 }
 
 TEST(PointSensitivities, AreAbsentWithTheirCauseWhereThePointIsMarchedOrQuasiStatic) {

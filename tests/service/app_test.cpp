@@ -6,6 +6,7 @@
 #include <cstring>
 #include <map>
 
+#include "core/periodic/orbit_sensitivity.h"
 #include "core/study/history.h"
 #include "google/rpc/error_details.pb.h"
 #include "proto/field_behavior.h"
@@ -635,8 +636,8 @@ void fill(google::protobuf::Message& message, int elements) {
 TEST(SimulationViews, TheLongestCurveFitsIntoAnAnswerInFull) {
   v1::CurvePoint point;
   v1::PointResult& most = *point.mutable_result();
-  fill(most, 3);               // flanks
-  most.clear_sensitivities();  // only of an operating point
+  fill(most, 3);  // flanks
+  most.clear_sensitivities();
   while (most.warnings_size() < 5) *most.add_warnings() = v1::RangeWarning(most.warnings(0));
   while (most.contact_losses_size() < 20) {
     *most.add_contact_losses() = v1::ContactLoss(most.contact_losses(0));
@@ -645,6 +646,28 @@ TEST(SimulationViews, TheLongestCurveFitsIntoAnAnswerInFull) {
   v1::SimulationResult result;
   for (int i = 0; i < kMaximumCurvePoints; ++i) *result.add_points() = point;
   EXPECT_LT(result.ByteSizeLong(), 4'000'000U) << "clients accept 4 MiB unless told otherwise";
+
+  v1::PointSensitivities& sensitivities =
+      *result.mutable_points(0)->mutable_result()->mutable_sensitivities();
+  const std::string name(60, 'x');  // "lubricant.improved_yasutomi.expansivity_pressure_factor"
+  for (int f = 0; f < kOrbitFigures; ++f) {
+    sensitivities.add_figures(name);
+    sensitivities.add_values(1.0 / 3);
+  }
+  for (int i = 0; i < 31; ++i) {  // under the law with most parameters
+    v1::ParameterSensitivity& parameter = *sensitivities.add_parameters();
+    parameter.set_parameter(name);
+    parameter.set_unit("kg/(m3 K)");
+    parameter.set_value(1.0 / 3);
+    for (int f = 0; f < kOrbitFigures; ++f) {
+      parameter.add_derivatives(1.0 / 3);
+      parameter.add_elasticities(1.0 / 3);
+    }
+  }
+  const v1::CurvePoint differentiated = result.points(0);
+  result.clear_points();
+  for (int i = 0; i < kMaximumDifferentiatedCurvePoints; ++i) *result.add_points() = differentiated;
+  EXPECT_LT(result.ByteSizeLong(), 4'000'000U);
 }
 
 TEST_F(AppTest, AReadMaskNamesTheFieldsOfAnAnswer) {

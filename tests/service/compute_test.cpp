@@ -280,6 +280,60 @@ TEST(Sensitivities, ComeWithAPointIfAskedForAndCountAsAnotherInput) {
   EXPECT_EQ(result.result().sensitivities().parameters_size(), 28);
 }
 
+TEST(Sensitivities, OfIndependentPointsHaveTheBitsOfThoseOfSinglePoints) {
+  const std::vector<double> speeds = {2, 60, 70, 75, 110};
+  for (const v1::PointModel model : {v1::POINT_MODEL_AUTOMATIC, v1::POINT_MODEL_QUASI_STATIC}) {
+    v1::Simulation asked = independent_curve(speeds);
+    asked.mutable_inefficiency_curve()->set_model(model);
+    asked.mutable_inefficiency_curve()->set_sensitivities(true);
+    const v1::SimulationResult curve = result_of(asked);
+    ASSERT_EQ(curve.points_size(), static_cast<int>(speeds.size()));
+    for (int i = 0; i < curve.points_size(); ++i) {
+      v1::Simulation single = point_of(asked.lubricant(), speeds[static_cast<std::size_t>(i)]);
+      single.mutable_operating_point()->set_model(model);
+      single.mutable_operating_point()->set_sensitivities(true);
+      EXPECT_EQ(curve.points(i).SerializeAsString(),
+                result_of(single).points(0).SerializeAsString())
+          << model << " at " << speeds[static_cast<std::size_t>(i)];
+      const v1::PointResult& point = curve.points(i).result();
+      EXPECT_EQ(point.sensitivities().parameters_size(),
+                model == v1::POINT_MODEL_QUASI_STATIC ? 0 : 28);
+      EXPECT_EQ(point.has_sensitivities(),
+                std::ranges::none_of(point.warnings(), [](const v1::RangeWarning& warning) {
+                  return warning.code() == "NO_SENSITIVITIES";
+                }));
+    }
+  }
+}
+
+TEST(Sensitivities, OfACurveCountAsAnotherInputAndChangeNothingElse) {
+  v1::Simulation plain = curve_simulation();
+  v1::InefficiencyCurveStudy& study = *plain.mutable_inefficiency_curve();
+  study.Clear();
+  for (const double speed : {66, 69, 72, 75}) study.add_speeds_kilometres_per_hour(speed);
+  v1::Simulation with = plain;
+  with.mutable_inefficiency_curve()->set_sensitivities(true);
+  v1::Simulation without = plain;
+  without.mutable_inefficiency_curve()->set_sensitivities(false);
+  EXPECT_EQ(input_hash(inputs_for(without)), input_hash(inputs_for(plain)));
+  EXPECT_NE(input_hash(inputs_for(with)), input_hash(inputs_for(plain)));
+  EXPECT_GT(estimate_cost(inputs_for(with).effective).processor_seconds(),
+            estimate_cost(inputs_for(plain).effective).processor_seconds());
+  v1::SimulationResult curve = result_of(with);
+  int branch_ends = 0;
+  for (v1::CurvePoint& each : *curve.mutable_points()) {
+    EXPECT_EQ(each.result().sensitivities().figures_size(), 9) << each.speed_kilometres_per_hour();
+    branch_ends += each.has_branch_end() ? 1 : 0;
+    each.mutable_result()->clear_sensitivities();
+  }
+  EXPECT_EQ(branch_ends, 1);
+  const v1::SimulationResult expected = result_of(plain);
+  ASSERT_EQ(curve.points_size(), expected.points_size());
+  for (int i = 0; i < curve.points_size(); ++i) {
+    EXPECT_EQ(curve.points(i).ShortDebugString(), expected.points(i).ShortDebugString());
+  }
+}
+
 TEST(IndependentPoints, HaveAnotherInputHashThanAFollowedBranchAndCostLess) {
   v1::Simulation independent = curve_simulation();
   independent.mutable_inefficiency_curve()->set_independent_points(true);

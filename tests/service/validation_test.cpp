@@ -229,6 +229,13 @@ TEST(Curve, PointsAndWorkAreLimited) {
   EXPECT_THAT(check(simulation), IsEmpty());
   simulation.mutable_solver_options()->set_maximum_mesh_cycles(100000);
   EXPECT_THAT(check(simulation), violation("simulation.inefficiency_curve", "work limit"));
+  simulation.clear_solver_options();
+  curve->set_sensitivities(true);
+  EXPECT_THAT(check(simulation),
+              violation("simulation.inefficiency_curve.speed_step_kilometres_per_hour",
+                        "961 points with sensitivities; allowed: at most 300"));
+  curve->set_speed_step_kilometres_per_hour(0.5);
+  EXPECT_THAT(check(simulation), IsEmpty());
 }
 
 TEST(Curve, ManyBadSpeedsAreCountedNotListed) {

@@ -70,6 +70,10 @@ void add_curve_flags(FlagList& list, CurveFlags& flags) {
               "Road slope, also in percent: 6%",
               [&](double value) { study.set_ascent_angle_degrees(value); });
   add_model_and_start_flags(list, study);
+  list.toggle("--sensitivities",
+              "Also differentiate the figures of each point by every parameter, of at most 300 "
+              "points, and print the elasticities of the inefficiency; CSV and JSON have all.",
+              [&] { study.set_sensitivities(true); });
   list.toggle(
       "--no-uncertainty",
       "Leave out the uncertainty of the inputs, which takes two to three times as long as the "
@@ -162,7 +166,9 @@ Command curve_command() {
        "tribodyn curve --lubricant paper-fluid-1 --compare isothermal,newtonian,no-boundary --plot "
        "models.svg",
        "tribodyn curve --lubricant paper-fluid-1 --first-speed 60 --last-speed 85 --speed-step 1 "
-       "--direction down"},
+       "--direction down",
+       "tribodyn curve --lubricant paper-fluid-1 --speeds 20,60,100 --sensitivities --csv "
+       "curve.csv"},
       {},
       {},
       {}};
@@ -191,7 +197,7 @@ Command curve_command() {
   };
   command.main_flags = {"--lubricant",  "--speed", "--first-speed", "--last-speed",
                         "--speed-step", "--sump",  "--gear-set",    "--surface",
-                        "--vehicle",    "--csv",   "--plot"};
+                        "--vehicle",    "--csv",   "--plot",        "--sensitivities"};
   command.run = [flags](const CommonOptions& options) { return run_curve(*flags, options); };
   return command;
 }

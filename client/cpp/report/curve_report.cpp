@@ -10,6 +10,7 @@
 #include "client/cpp/report/inputs.h"
 #include "client/cpp/report/limits_report.h"
 #include "client/cpp/report/precision.h"
+#include "client/cpp/report/sensitivity_report.h"
 #include "client/cpp/report/warnings.h"
 #include "client/cpp/text/csv.h"
 #include "client/cpp/text/table.h"
@@ -182,12 +183,15 @@ std::string curve_report(const v1::Simulation& simulation, const ResultDetails& 
   add_provenance(result, details.assumptions, notes);
   add_input_warnings(result.input_warnings(), notes);
   const std::string limits = limits_report(result);
+  const bool differentiated = simulation.inefficiency_curve().sensitivities();
   return head.text() + "\n" + curve_table(simulation, uncertainty).text() + "\n" +
-         (limits.empty() ? "" : limits + "\n") + notes.text();
+         (limits.empty() ? "" : limits + "\n") + notes.text() +
+         (differentiated ? "\n" + curve_sensitivity_report(result) : "");
 }
 
 std::string points_csv(const std::vector<v1::Simulation>& simulations) {
   std::vector<CsvRow> rows;
+  const CsvRow no_sensitivities = empty_sensitivity_cells(simulations);
   for (const v1::Simulation& simulation : simulations) {
     const Inputs inputs = inputs_of(simulation);
     for (const v1::CurvePoint& point : simulation.result().points()) {
@@ -214,6 +218,9 @@ std::string points_csv(const std::vector<v1::Simulation>& simulations) {
       row.emplace_back("input_warnings", codes_of(simulation.result().input_warnings()));
       row.emplace_back("model_version", simulation.result().model_version());
       row.emplace_back("input_hash", simulation.result().input_hash());
+      CsvRow sensitivities = no_sensitivities;
+      fill_sensitivity_cells(point.result(), sensitivities);
+      row.insert(row.end(), sensitivities.begin(), sensitivities.end());
       rows.push_back(std::move(row));
     }
   }

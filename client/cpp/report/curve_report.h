@@ -15,7 +15,8 @@ std::string curve_report(const v1::Simulation& simulation, const ResultDetails& 
                          const CurveUncertainty* uncertainty = nullptr);
 
 /// Returns a CSV line for every point of every simulation, of curves and of single points, with the
-/// inputs that distinguish the simulations and every field of the result.
+/// inputs that distinguish the simulations and every field of the result; sensitivities behind them
+/// (sensitivity_report.h).
 std::string points_csv(const std::vector<v1::Simulation>& simulations);
 
 }  // namespace tribodyn::client

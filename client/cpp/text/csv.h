@@ -43,7 +43,7 @@ using CsvRow = std::vector<std::pair<std::string, std::string>>;
 /// message's type and keep the unit suffix. An Extremes field "film_ratio" gives
 /// "minimum_film_ratio" and so on. A repeated field of at most `kFlankSlots` numbered parts
 /// (FlankLoss) is written part by part; of any other repeated field only the count is written.
-/// Sensitivities are left out: they are a table of their own (sensitivity_report.h).
+/// Sensitivities are left out: sensitivity_report.h makes cells of them.
 void append_fields(const google::protobuf::Message& message, std::string_view prefix, CsvRow& row);
 inline constexpr int kFlankSlots = 3;
 /// Appends the headers of append_fields(), each with an empty cell.

@@ -50,6 +50,24 @@ def test_sensitivities_are_the_slopes_between_neighbouring_points(client):
     assert len(client.sensitivities(FLUID, speed_kilometres_per_hour=75)) == len(found)
 
 
+def test_a_curve_has_the_sensitivities_of_its_points(client):
+    speeds = [60, 100]
+    plain = client.curve(FLUID, speeds_kilometres_per_hour=speeds, independent_points=True)
+    curve = client.curve(
+        FLUID, speeds_kilometres_per_hour=speeds, independent_points=True, sensitivities=True
+    )
+    assert len(curve.columns) == len(plain.columns) + 2 * 9 * 28
+    point = client.sensitivities(FLUID, speed_kilometres_per_hour=100)
+    for i, parameter in enumerate(point["parameter"]):
+        for name in ("derivative.mesh_loss_power_watts", "elasticity.film_ratio.mean"):
+            assert curve[f"{name}.{parameter}"][1] == point[name][i]
+    without = client.curve(
+        FLUID, speeds_kilometres_per_hour=[100], model="quasi-static", sensitivities=True
+    )
+    assert "NO_SENSITIVITIES" in without["warnings"][0]
+    assert len(without.columns) == len(plain.columns)
+
+
 def test_a_torque_and_model_options_are_taken(client):
     coast = client.point(
         FLUID,
@@ -300,6 +318,21 @@ def test_variants_have_contact_figures_and_gradients_on_request(client):
     assert 0 < found[friction][0] < 1
     with pytest.raises(tribodyn.TribodynError, match="alfa is no parameter"):
         client.evaluate(table, lubricant=FLUID, elasticities="lubricant.alfa")
+    shared = [
+        "gear_set.youngs_modulus_pascals",
+        "sump_temperature_celsius",
+        "speed_kilometres_per_hour",
+        "wheel_torque_newton_metres",
+        "inlet_temperature_rise_kelvin",
+    ]
+    found = client.evaluate(
+        {"speed_kilometres_per_hour": [100]},
+        lubricant=FLUID,
+        elasticities=shared,
+        elasticity_figures="pinion_friction_torque_mean_newton_metres",
+    )
+    for name in shared:
+        assert found[f"elasticity.pinion_friction_torque_mean_newton_metres.{name}"][0] != 0
 
 
 def test_a_refused_variant_leaves_the_others(client):

@@ -212,6 +212,22 @@ def sensitivity_table(
     }
 
 
+def sensitivity_columns(simulation: simulations_pb2.Simulation) -> dict[str, list[float]]:
+    """Returns columns of the sensitivities of the points of a curve; NaN where a point has none."""
+    points = [each.result.sensitivities for each in simulation.result.points]
+    columns: dict[str, list[float]] = {}
+    for i, found in enumerate(points):
+        for parameter in found.parameters:
+            for f, figure in enumerate(found.figures):
+                for kind, values in (
+                    ("derivative", parameter.derivatives),
+                    ("elasticity", parameter.elasticities),
+                ):
+                    name = f"{kind}.{figure}.{parameter.parameter}"
+                    columns.setdefault(name, [float("nan")] * len(points))[i] = values[f]
+    return columns
+
+
 def in_columns(rows: Iterable[Mapping[str, Any]]) -> dict[str, list[Any]]:
     """Returns the columns of rows that have equal keys."""
     columns: dict[str, list[Any]] = {}

@@ -13,6 +13,7 @@ from tribodyn._frames import (
     in_columns,
     point_row,
     result_attrs,
+    sensitivity_columns,
     sensitivity_table,
 )
 from tribodyn._session import Session
@@ -104,7 +105,7 @@ class Studies(Session):
         "elasticity.FIGURE", relative change over relative change. ``attrs``, besides those of
         point(), holds ``figures``, the values of the figures by their names, e.g. "film_ratio.mean",
         and ``one_sided``: the response is at the edge of an event, so that the derivatives hold on
-        one side. Costs 16 to 28 times the point. The table is empty at a fold.
+        one side. Takes two to four times as long as the point. The table is empty at a fold.
         """
         arguments = Arguments()
         simulation = requests.operating_point(
@@ -143,6 +144,7 @@ class Studies(Session):
         inlet_temperature_rise_kelvin: Quantity | None = None,
         tolerance: float | None = None,
         model: str | None = None,
+        sensitivities: bool = False,
         options: Options = Options(),
     ) -> Frame:
         """Returns the figures at each speed, in ascending order: a table of one row a speed.
@@ -152,6 +154,9 @@ class Studies(Session):
         ``independent_points``: each is solved alone, in about a third of the time. A speed without
         a result has NaN, and the reason in ``status``. Other arguments, columns and ``attrs`` as of
         point(); ``branch_ends`` holds the pairs of speeds between which a branch ends.
+        ``sensitivities``, of at most 300 speeds, adds "derivative.FIGURE.PARAMETER" and
+        "elasticity.FIGURE.PARAMETER" as in sensitivities(); NaN where a point has none, with
+        NO_SENSITIVITIES in ``warnings``.
         """
         arguments = Arguments()
         simulation = requests.curve(
@@ -170,8 +175,9 @@ class Studies(Session):
             tolerance=tolerance,
             model=model,
         )
+        simulation.inefficiency_curve.sensitivities = sensitivities
         (found,) = await self._solve(arguments, [simulation], options, "curve")
-        return frame(_columns(found), result_attrs(found))
+        return frame({**_columns(found), **sensitivity_columns(found)}, result_attrs(found))
 
     async def compare(
         self,
