@@ -15,7 +15,7 @@ enum class SweepDirection { kUp, kDown };
 struct SweepOptions {
   SweepDirection direction = SweepDirection::kUp;
   /// Start and model apply to the first point, or to every point of independent ones; progress to
-  /// the whole sweep.
+  /// the whole sweep; sensitivities to every point, not to those that locate the end of a branch.
   PointOptions point;
   /// Each point is solved alone, from its own start: the same bits as solve_operating_point gives.
   /// No branch is followed and no end of a branch is looked for, which takes most of a sweep's
