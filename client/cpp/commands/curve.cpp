@@ -166,9 +166,7 @@ Command curve_command() {
        "tribodyn curve --lubricant paper-fluid-1 --compare isothermal,newtonian,no-boundary --plot "
        "models.svg",
        "tribodyn curve --lubricant paper-fluid-1 --first-speed 60 --last-speed 85 --speed-step 1 "
-       "--direction down",
-       "tribodyn curve --lubricant paper-fluid-1 --speeds 20,60,100 --sensitivities --csv "
-       "curve.csv"},
+       "--direction down"},
       {},
       {},
       {}};
