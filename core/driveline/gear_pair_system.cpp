@@ -101,7 +101,7 @@ ContactConditions GearPairSystem::contact_conditions(const FlankKinematics& flan
                                                      const double* y, FlankMotion& motion) const {
   HWY_NAMESPACE::set_flank_motion(flank, y[kPinionSpeed], y[kGearSpeed],
                                   options_.tabulated_friction_arms, motion);
-  FlankMotion by_contact = motion;  // velocities as the contact point has them
+  FlankMotion by_contact = motion;  // velocities relative to the contact point
   if (options_.subtract_contact_point_motion) {
     HWY_NAMESPACE::subtract_drift(flank, y[kPinionSpeed], by_contact);
   }

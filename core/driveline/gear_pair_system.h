@@ -132,7 +132,7 @@ class GearPairSystem {
   /// d state / d phase of time and the seven states of motion.
   void motion(const double* state, const Mechanics& at, const Torques& torques,
               double* derivative) const;
-  /// The same under given friction arms; sets the mechanics too.
+  /// Sets `at` to the mechanics under given friction arms, and the derivative of that motion.
   void motion(const MeshPhase& phase, const ContactRegime& regime, const double* state,
               const FrictionArms& friction, const Torques& torques, Mechanics& at,
               double* derivative) const;

@@ -17,12 +17,13 @@ HWY_BEFORE_NAMESPACE();
 namespace tribodyn {
 namespace HWY_NAMESPACE {
 
-/// Sets what presses flanks that touch on `side` (+1 drive, -1 coast), from the mesh functions.
+/// Sets transmission error, deflection and mesh force of flanks that touch on `side` (+1 drive, -1
+/// coast), from the mesh functions in `at`.
 template <class Real>
 HWY_INLINE void set_mesh_force(const MotionConstants& c, double side, const Real* y,
                                MechanicsOf<Real>& at) {
   const MeshFunctionsOf<Real>& m = at.mesh;
-  // x - b, not x: on the drive side the deflection keeps all its digits.
+  // x - b, because on the drive side the deflection then keeps all its digits.
   const Real beyond = y[kMeshApproach] + m.radius_integral - m.static_transmission_error;
   at.transmission_error = beyond + c.half_backlash;       // (eq 6)
   at.deflection = beyond + (1 - side) * c.half_backlash;  // (eq 5)

@@ -55,8 +55,8 @@ struct MechanicsOf {
 };
 using Mechanics = MechanicsOf<double>;
 
-/// Derivatives of the equations of motion at one instant by what they depend on. Real: double or a
-/// pack.
+/// Partial derivatives of the equations of motion at one instant, by the states and by the friction
+/// arms. Real: double or a pack.
 template <class Real>
 struct MotionSlopesOf {
   Real relative_radius, gear_radius;  ///< R_p - e', R_g [m]

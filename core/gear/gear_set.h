@@ -7,9 +7,8 @@ namespace tribodyn {
 
 inline constexpr int kFlankPairs = 3;  ///< pairs that may touch at once (eq 29)
 
-/// mean + sum_i sine[i-1] sin(i theta) + cosine[i-1] cos(i theta), i = 1..harmonics
-/// (eqs 8, 9, 10 and 11).
-/// Both vectors have the same length.
+/// mean + sum_i sine[i-1] sin(i theta) + cosine[i-1] cos(i theta), i = 1..harmonics (eqs 8, 9, 10
+/// and 11). Both vectors have the same length.
 struct FourierSeries {
   double mean = 0;
   std::vector<double> sine;

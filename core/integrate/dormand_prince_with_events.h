@@ -54,7 +54,7 @@ struct MarchStep {
 /// that of the pair everywhere (Dormand and Prince, J. Comput. Appl. Math. 6, 1980, 19).
 ///
 /// Corners: a piece may end at an event like a power t^p, 0 < p < 1, of the distance (friction
-/// under a load that comes to zero). The embedded estimate covers only a part of the error there.
+/// under a load that falls to zero). The embedded estimate covers only a part of the error there.
 /// Steps that come near such an event are tested more sharply, so that they shrink towards it and
 /// the error of the whole stays in proportion to the tolerance. Corners in known places are better
 /// taken out of the right-hand side by a substitution.

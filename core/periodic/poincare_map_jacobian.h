@@ -22,7 +22,7 @@ namespace tribodyn {
 /// (R. Seydel, Practical Bifurcation and Stability Analysis, 3rd ed., 2010, chapter 7; G. H. Golub
 /// and C. F. Van Loan, Matrix Computations, 4th ed., 2013, chapter 7.)
 ///
-/// Not safe for concurrent access, also by const methods alone: they keep what they compute.
+/// Not safe for concurrent access: const methods too store results in mutable members.
 class PoincareMapJacobian {
  public:
   static constexpr int kUnknowns = 8;  // the seven states and the torque

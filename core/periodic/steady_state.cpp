@@ -13,9 +13,11 @@ namespace {
 
 constexpr int kUnknowns = 8;  // the seven states from kPinionShaftTwist on, the torque
 // Varied over marches of the first 30 random scenes of core/README.md, at a step tolerance of 1e-6.
-// Periods that an extrapolation looks back on: 4 take 21 % more work, 12 1 % more.
+// Number of past periods that an extrapolation uses. With 4 the marches take 21 % more work, with
+// 12 1 % more.
 constexpr int kWindow = 8;
-// Marched before anything is extrapolated: 2 take 32 % more work, 24 27 % more.
+// Number of mesh cycles that are marched before the first extrapolation. With 2 they take 32 % more
+// work, with 24 27 % more.
 constexpr int kFirstCycles = 8;
 // On the largest multiplier, whose finite differences err by 4e-7 in twelve random scenes (see
 // below). A caution for others: with 1e-5 and 3e-3 the marches come out the same.

@@ -210,7 +210,9 @@ double other_losses(const GearPairSystem& system, ContactRegime regime, const Me
     system.kinematics(grid.at(static_cast<int>(n)), regime, y.data(), at);
     sum += at.damper_force * at.transmission_velocity +
            system.dynamics().pinion_shaft_damping * square(y[kPinionShaftSpeed] - y[kPinionSpeed]);
-    if (!system.options().energy_consistent) sum += GearPairSystem::parametric_torque(at) * y[kPinionSpeed];
+    if (!system.options().energy_consistent) {
+      sum += GearPairSystem::parametric_torque(at) * y[kPinionSpeed];
+    }
   }
   return sum / static_cast<double>(count);
 }

@@ -65,7 +65,7 @@ bool is_on_branch(const Bracket& bracket, const PointResult& found) {
 }
 
 /// Solves at a speed from the branch and narrows the bracket to either side of it. Returns false if
-/// the branch goes on to the response beyond.
+/// the branch connects to the response beyond, so that there is no end between them.
 bool narrow_at(PreparedScene& scene, double ascent_angle, double speed, PointOptions options,
                Bracket& bracket) {
   options.carried_state = carried_from(bracket.before);

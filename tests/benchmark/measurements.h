@@ -27,7 +27,7 @@ void record(const std::string& path, const std::vector<Measurement>& measurement
 void print(const std::vector<Measurement>& measurements);
 
 /// What the figures were measured on: the processor's name, the number of processors, and the
-/// instruction set that the core works on vectors with unless it is told another one.
+/// instruction set that the vector code of the core uses by default.
 std::string machine_name();
 
 /// Processor time of this process so far [s].

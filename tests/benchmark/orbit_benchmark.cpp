@@ -217,7 +217,8 @@ void march_in_turn(PreparedScene& prepared, const Place& place, const PointResul
   }
 }
 
-/// Sets the times of the runs. Returns the least of each method that errs as little as asked.
+/// Sets the time of each run to its median. Returns, for each method, the least time of the runs
+/// whose error is within that of the place.
 std::map<std::string, double> least_times(const Place& place, Contest& contest) {
   std::map<std::string, double> best;
   for (auto& [name, runs] : contest.run) {
