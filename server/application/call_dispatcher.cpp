@@ -110,6 +110,7 @@ class GrantedSource final : public AnyMessageSource {
     source_->observe(observer);
   }
   bool is_short() const override { return source_->is_short(); }
+  bool follows_changes() const override { return source_->follows_changes(); }
   std::string tag() const override { return source_->tag(); }
   bool may_continue() const override { return source_->may_continue(); }
   bool may_be_ahead() const override { return source_->may_be_ahead(); }

@@ -36,6 +36,7 @@ class CampaignWatch final : public MessageSource<v1::CampaignEvent> {
     store_.observe_campaigns(observer);
     jobs_.scheduler().wake(observer);
   }
+  bool follows_changes() const override { return true; }
 
   Step next(v1::CampaignEvent& out) override {
     if (is_over_) return Step::kEnd;

@@ -35,6 +35,9 @@ class AnyMessageSource {
   virtual void observe(const std::weak_ptr<Observer>&) {}
   /// Returns true if each message takes about a millisecond or less. Constant.
   virtual bool is_short() const { return false; }
+  /// Returns true if the messages report changes as they happen: a shutdown ends the stream after
+  /// the message of the last change, and any other stream at once. Constant.
+  virtual bool follows_changes() const { return false; }
   /// Returns a text that all sources of the same messages share, and no others; "" if the messages
   /// may change.
   virtual std::string tag() const { return {}; }

@@ -39,6 +39,21 @@ void StreamMachine::close(const google::rpc::Status& status) {
   if (is_idle()) finish(std::move(lock), status);
 }
 
+void StreamMachine::shut_down(const google::rpc::Status& status) {
+  std::unique_lock lock(mutex_);
+  const bool may_say_more = is_open_ && source_->follows_changes();
+  if (!may_say_more) {
+    lock.unlock();
+    return close(status);
+  }
+  closing_when_idle_ = status;
+  again_ = true;
+  if (!is_idle()) return;
+  is_stepping_ = true;
+  lock.unlock();
+  transport_.run_step();
+}
+
 void StreamMachine::written(bool ok) {
   std::unique_lock lock(mutex_);
   is_writing_ = false;
@@ -47,7 +62,8 @@ void StreamMachine::written(bool ok) {
   }
   if (is_stepping_) return;  // that step reads what has changed
   if (!ok) return finish(std::move(lock), *closing_);
-  if (!again_ && !closing_ && !prepared_ && !source_->may_continue()) return;
+  const bool must_end = closing_ || closing_when_idle_;
+  if (!again_ && !must_end && !prepared_ && !source_->may_continue()) return;
   is_stepping_ = true;
   const bool is_short = prepared_ || source_->is_short();
   lock.unlock();
@@ -139,7 +155,9 @@ bool StreamMachine::has_closed(std::unique_lock<std::mutex>& lock) {
 
 bool StreamMachine::go_idle() {
   const std::lock_guard lock(mutex_);
-  if (again_ || closing_) return false;
+  if (again_) return false;
+  if (closing_when_idle_ && !closing_) closing_ = closing_when_idle_;
+  if (closing_) return false;
   is_stepping_ = false;
   return true;
 }

@@ -36,7 +36,7 @@ class StreamTransport {
 /// The states of one server stream, for every transport: pulls the messages of a source and writes
 /// one at a time. While a message is written, the next one is prepared if the source allows it, and
 /// no more than these two wait for a slow client. Pulls again when the source reports a change.
-/// Closes the stream at its end, or when the transport or a shutdown requests it, as soon as no
+/// Closes the stream at its end, at a shutdown, or when the transport requests it, as soon as no
 /// write is under way; cuts off a client that reads nothing. Safe for concurrent access: the thread
 /// that takes a step owns the source until the end of the step.
 class StreamMachine : public Observer {
@@ -58,6 +58,9 @@ class StreamMachine : public Observer {
   void changed() override;
   /// Ends the stream once no write is under way. The first of several statuses counts.
   void close(const google::rpc::Status& status);
+  /// Ends a stream that follows changes as soon as its source has nothing to say, and any other
+  /// once no write is under way. The transport limits the time that this takes.
+  void shut_down(const google::rpc::Status& status);
   /// A write has ended; `ok` is false if the client is gone.
   void written(bool ok);
   /// Takes a step: writes the prepared message, or pulls one and writes or keeps it, or ends. Only
@@ -83,7 +86,8 @@ class StreamMachine : public Observer {
   /// Returns true if the stream is to close: the step is over, and so is the stream unless a write
   /// is under way.
   bool has_closed(std::unique_lock<std::mutex>& lock);
-  /// Ends a step in which the source had nothing. Returns false if the step must go on.
+  /// Ends a step in which the source had nothing. Returns false if the step must go on, because of
+  /// a change or to end the stream.
   bool go_idle();
 
   StreamTransport& transport_;
@@ -99,6 +103,7 @@ class StreamMachine : public Observer {
   bool again_ = false;  // changed since the last step began
   Reply prepared_;      // while a write is under way: the next message
   std::optional<google::rpc::Status> closing_;
+  std::optional<google::rpc::Status> closing_when_idle_;
   Clock::time_point end_;
   Clock::time_point writing_since_;  // of the write under way
 };

@@ -112,6 +112,7 @@ class Watch : public MessageSource<v1::SimulationEvent> {
     if (!is_named_) store_.observe(observer);
     jobs_.scheduler().wake(observer);
   }
+  bool follows_changes() const override { return true; }
 
   Step next(v1::SimulationEvent& out) override {
     if (is_over()) return Step::kEnd;

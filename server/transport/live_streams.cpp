@@ -45,14 +45,14 @@ void LiveStreams::remove(const LiveStream* stream) {
   if (--of_peer->second == 0) of_peers_.erase(of_peer);
 }
 
-void LiveStreams::close_all() {
+void LiveStreams::shut_down() {
   std::map<const LiveStream*, Entry> open;
   {
     const std::lock_guard lock(mutex_);
     closed_ = true;
     open = streams_;
   }
-  for (const auto& [key, entry] : open) entry.stream->close(shutting_down());
+  for (const auto& [key, entry] : open) entry.stream->shut_down(shutting_down());
 }
 
 }  // namespace tribodyn::server

@@ -16,8 +16,8 @@ namespace tribodyn::server {
 class LiveStream {
  public:
   virtual ~LiveStream() = default;
-  /// Ends the stream as soon as no write is under way.
-  virtual void close(const google::rpc::Status& status) = 0;
+  /// Ends the stream soon: see StreamMachine::shut_down().
+  virtual void shut_down(const google::rpc::Status& status) = 0;
 };
 
 /// The open streams of a transport: limits their number, and ends them when the server stops
@@ -34,8 +34,8 @@ class LiveStreams {
   std::optional<google::rpc::Status> add(const std::shared_ptr<LiveStream>& stream,
                                          const std::string& peer = {});
   void remove(const LiveStream* stream);
-  /// Closes all and lets none open any more.
-  void close_all();
+  /// Ends all soon, and lets none open any more.
+  void shut_down();
 
  private:
   struct Entry {

@@ -39,6 +39,7 @@ class CountingSource : public AnyMessageSource {
   explicit CountingSource(bool is_short = false, bool is_ahead = false)
       : is_short_(is_short), is_ahead_(is_ahead) {}
   bool is_short() const override { return is_short_; }
+  bool follows_changes() const override { return reports_changes; }
   bool may_be_ahead() const override { return is_ahead_; }
   int given() const { return given_; }
   bool may_continue() const override { return !says_when_it_waits || given_ < available; }
@@ -60,6 +61,7 @@ class CountingSource : public AnyMessageSource {
   std::atomic<int> available = 0;
   std::atomic<bool> is_closed = false;  // set after the last message is available
   bool says_when_it_waits = false;
+  bool reports_changes = false;
 
  private:
   const bool is_short_, is_ahead_;
@@ -163,7 +165,9 @@ TEST(StreamMachine, WritesEveryMessageOnceInEveryOrderOfEvents) {
   for (int seed = 0; seed < schedules; ++seed) {
     std::mt19937 random(static_cast<unsigned>(seed));
     Manual stream(std::chrono::minutes(1), std::chrono::hours(1), seed % 2 == 1);
+    stream.source->reports_changes = seed % 4 < 2;
     bool is_disturbed = false;
+    std::optional<int> available_at_shutdown;
     for (int i = 0; i < 60; ++i) {
       switch (random() % 12) {
         case 0:
@@ -185,6 +189,10 @@ TEST(StreamMachine, WritesEveryMessageOnceInEveryOrderOfEvents) {
           break;
         case 6:
           if (random() % 20 == 0) is_disturbed |= stream.end_write(false);
+          if (random() % 20 == 0 && !available_at_shutdown) {
+            available_at_shutdown = stream.source->available;
+            stream.machine.shut_down(status_of(google::rpc::UNAVAILABLE));
+          }
           break;
         case 7:
         case 8:
@@ -203,7 +211,11 @@ TEST(StreamMachine, WritesEveryMessageOnceInEveryOrderOfEvents) {
     stream.machine.changed();
     stream.run_all();
     ASSERT_TRUE(stream.transport.end()) << "schedule " << seed;
-    if (!is_disturbed) {
+    if (available_at_shutdown) {
+      if (!is_disturbed && stream.source->reports_changes) {
+        ASSERT_GE(stream.transport.begun(), *available_at_shutdown) << "schedule " << seed;
+      }
+    } else if (!is_disturbed) {
       ASSERT_EQ(stream.code(), google::rpc::OK);
       ASSERT_EQ(stream.transport.begun(), stream.source->available) << "schedule " << seed;
     }
@@ -368,6 +380,45 @@ TEST(StreamMachine, AShutdownWhileItIsOpenedEndsIt) {
   EXPECT_EQ(transport.end()->code(), google::rpc::UNAVAILABLE);
 }
 
+TEST(StreamMachine, AShutdownEndsAStreamOfChangesAfterTheLastOne) {
+  for (const bool is_writing : {false, true}) {
+    Manual stream;
+    stream.source->reports_changes = true;
+    stream.source->says_when_it_waits = true;
+    if (is_writing) {
+      stream.feed();
+      stream.run_step();
+    }
+    stream.source->available += 2;  // their notification is under way
+    stream.machine.shut_down(status_of(google::rpc::UNAVAILABLE));
+    EXPECT_FALSE(stream.transport.end());
+    stream.run_all();
+    EXPECT_EQ(stream.transport.begun(), is_writing ? 3 : 2);
+    EXPECT_EQ(stream.code(), google::rpc::UNAVAILABLE);
+  }
+}
+
+TEST(StreamMachine, AShutdownEndsOtherStreamsBeforeTheirNextMessage) {
+  Manual stream;
+  stream.source->available = 2;
+  stream.machine.shut_down(status_of(google::rpc::UNAVAILABLE));
+  EXPECT_EQ(stream.code(), google::rpc::UNAVAILABLE);
+  EXPECT_EQ(stream.transport.begun(), 0);
+}
+
+TEST(StreamMachine, AClientThatLeavesDuringAShutdownEndsAStreamOfChanges) {
+  Manual stream;
+  stream.source->reports_changes = true;
+  stream.source->available = 2;
+  stream.machine.shut_down(status_of(google::rpc::UNAVAILABLE));
+  EXPECT_TRUE(stream.run_step());
+  stream.machine.close(status_of(google::rpc::CANCELLED));
+  EXPECT_TRUE(stream.end_write());
+  stream.run_all();
+  EXPECT_EQ(stream.code(), google::rpc::CANCELLED);
+  EXPECT_EQ(stream.transport.begun(), 1);
+}
+
 /// Steps and ends of writes on threads of their own.
 class ThreadedTransport : public CheckedTransport {
  public:
@@ -395,6 +446,7 @@ TEST(StreamMachine, WritesEveryMessageOnceFromManyThreads) {
   for (int round = 0; round < streams; ++round) {
     const auto source = std::make_shared<CountingSource>(false, round % 2 == 1);
     const bool is_closed_early = round % 8 > 5;
+    source->reports_changes = round % 8 == 7;
     std::unique_ptr<ThreadedTransport> transport;
     std::unique_ptr<StreamMachine> machine;
     {
@@ -420,7 +472,9 @@ TEST(StreamMachine, WritesEveryMessageOnceFromManyThreads) {
           machine->look_at_clock();
           machine->changed();
         }
-        if (is_closed_early) machine->close(status_of(google::rpc::UNAVAILABLE));
+        if (!is_closed_early) return;
+        const auto status = status_of(google::rpc::UNAVAILABLE);
+        source->reports_changes ? machine->shut_down(status) : machine->close(status);
       });
       for (std::thread& thread : threads) thread.join();
       source->is_closed = true;

@@ -125,7 +125,7 @@ void GrpcServer::shutdown() {
   for (Acceptor& each : acceptors_) each.stop();
   set_serving(false);
   open_calls_.reset();
-  live_.close_all();
+  live_.shut_down();
   server_->Shutdown(std::chrono::system_clock::now() + kShutdownGrace);
   server_->Wait();
   server_.reset();

@@ -61,7 +61,7 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
     look_at_clock();
   }
 
-  void close(const google::rpc::Status& status) override { machine_.close(status); }
+  void shut_down(const google::rpc::Status& status) override { machine_.shut_down(status); }
   void OnWriteDone(bool ok) override {
     bytes_.Clear();
     machine_.written(ok);

@@ -71,7 +71,7 @@ void HttpServer::Connections::start() {
 
 void HttpServer::Connections::stop() {
   acceptor_.stop();
-  handler_.close_streams();
+  handler_.shut_down_streams();
   post([this] { begin_stop(); });
   thread_.join();
 }

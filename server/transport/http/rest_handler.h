@@ -61,7 +61,7 @@ class RestHandler {
   void handle(HttpRequest request, std::shared_ptr<const std::atomic<bool>> cancelled, Reply reply);
 
   /// Ends all streams with SHUTTING_DOWN and opens none any more.
-  void close_streams() { streams_->close_all(); }
+  void shut_down_streams() { streams_->shut_down(); }
 
   /// A body may have so many times the bytes of the method's longest binary request: numbers in
   /// indented JSON take 3.2 times the bytes of the binary form. No body is longer than

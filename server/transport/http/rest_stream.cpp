@@ -74,7 +74,7 @@ class RestStream final : public RestCall<StreamCall>,
     if (writer_ == nullptr) return machine_.refuse(status);
     machine_.close(status);
   }
-  void close(const google::rpc::Status& status) override { machine_.close(status); }
+  void shut_down(const google::rpc::Status& status) override { machine_.shut_down(status); }
 
  private:
   /// Gives the response of a body that never changes its ETag, its length and the requested range.
