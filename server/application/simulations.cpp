@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <mutex>
 #include <optional>
 
 #include "server/application/element_limits.h"
@@ -232,6 +233,7 @@ Outcome<v1::Simulation> create_simulation(Application& application,
   // Before the inputs are checked: the resources may have changed since the earlier request.
   auto earlier = earlier_answer(application, request, text, call);
   if (earlier && (!request.validate_only() || !earlier->ok())) return *std::move(earlier);
+  std::unique_lock slot(*application.submission_slots);
   const StopWatch watch;
   auto inputs = read_simulation(request.simulation(),
                                 resource_lookup(application.store, call.project, call.limits),
@@ -242,6 +244,7 @@ Outcome<v1::Simulation> create_simulation(Application& application,
     return invalid(violations);
   }
   const NewSimulation simulation = new_simulation(request, *inputs, sha256(text), call);
+  slot.unlock();
   if (request.validate_only()) return preview(*inputs, simulation);
   if (auto full = project_full(application, call)) return *std::move(full);
   WorkPlace place;

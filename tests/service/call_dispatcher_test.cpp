@@ -14,6 +14,7 @@
 #include <future>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -22,6 +23,7 @@
 
 #include "google/rpc/code.pb.h"
 #include "server/application/list_filter.h"
+#include "server/support/processor_slots.h"
 #include "tests/service/resource_calls.h"
 #include "tests/service/support.h"
 #include "tribodyn/v1/cycles.pb.h"
@@ -417,6 +419,28 @@ TEST_F(CallDispatcherTest, EveryCallIsAnsweredOnceWhateverTheLoadAndWhoeverCance
     }
   }
   EXPECT_EQ(total, kThreads * kRounds) << counted;
+}
+
+TEST(ProcessorSlots, LetNoMoreThreadsInThanThereAreSlots) {
+  constexpr int kSlots = 2;
+  ProcessorSlots slots(kSlots);
+  std::atomic<int> inside = 0, most = 0;
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 8; ++i) {
+    threads.emplace_back([&] {
+      for (int k = 0; k < 50; ++k) {
+        const std::lock_guard slot(slots);
+        const int now = ++inside;
+        for (int before = most; before < now && !most.compare_exchange_weak(before, now);) {
+        }
+        std::this_thread::yield();
+        --inside;
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_LE(most, kSlots);
+  EXPECT_EQ(inside, 0);
 }
 
 TEST(Workers, RefuseWhatTheirQueueHasNoPlaceFor) {
