@@ -340,21 +340,26 @@ AddOutcome insert_simulation(Connection& db, const NewSimulation& simulation, Mi
 }
 
 std::optional<StoredEvent> change_state(Connection& db, const StateChange& change) {
+  // The result and what else the end of a simulation sets is not named before: SQLite writes the
+  // entries of an index anew for each column that an update names, even if the value stays.
+  static const auto update_that_sets = [](const std::string& more) {
+    return "UPDATE simulations SET state = ?2, sequence = sequence + 1, "
+           "attempt = attempt + (?2 = 1), lost_attempts = lost_attempts + ?9, "
+           "start_time = CASE ?2 WHEN 1 THEN NULL WHEN 2 THEN ?3 ELSE start_time END, " +
+           more +
+           "lease_worker = nullif(?11, ''), lease_expire_time = CASE WHEN ?11 <> '' THEN ?12 END "
+           "WHERE id = ?1 AND state = coalesce(?4, state) AND state <= 2 AND state <> ?2 "
+           "AND attempt = coalesce(?10, attempt) RETURNING sequence, attempt, start_time";
+  };
+  static const std::string kUpdate = update_that_sets("");
+  static const std::string kEndingUpdate = update_that_sets(
+      "end_time = ?3, error_reason = nullif(?5, ''), error_message = nullif(?6, ''), "
+      "result = ?7, cache_hit = ?8, ");
   const LeaseTerms lease = change.lease.value_or(LeaseTerms{.worker = ""});
-  Prepared update(
-      db,
-      "UPDATE simulations SET state = ?2, sequence = sequence + 1, attempt = attempt + (?2 = 1), "
-      "lost_attempts = lost_attempts + ?9, "
-      "start_time = CASE ?2 WHEN 1 THEN NULL WHEN 2 THEN ?3 ELSE start_time END, "
-      "end_time = CASE WHEN ?2 >= 3 THEN ?3 END, "
-      "error_reason = nullif(?5, ''), error_message = nullif(?6, ''), result = ?7, cache_hit = ?8, "
-      "lease_worker = nullif(?11, ''), lease_expire_time = CASE WHEN ?11 <> '' THEN ?12 END "
-      "WHERE id = ?1 AND state = coalesce(?4, state) AND state <= 2 AND state <> ?2 "
-      "AND attempt = coalesce(?10, attempt) "
-      "RETURNING sequence, attempt, start_time",
-      change.id, change.to, change.time, change.from, change.error_reason, change.error_message,
-      change.result, change.cache_hit, change.attempt_is_lost, change.attempt, lease.worker,
-      lease.expire_time);
+  Prepared update(db, has_ended(change.to) ? kEndingUpdate : kUpdate, change.id, change.to,
+                  change.time, change.from, change.error_reason, change.error_message,
+                  change.result, change.cache_hit, change.attempt_is_lost, change.attempt,
+                  lease.worker, lease.expire_time);
   if (!update.executeStep()) return std::nullopt;
   StoredEvent event{.simulation = change.id,
                     .sequence = update.getColumn(0).getInt64(),
@@ -370,14 +375,14 @@ std::optional<StoredEvent> change_state(Connection& db, const StateChange& chang
 
 std::optional<StoredEvent> start_simulation(Connection& db, std::int64_t id, Microseconds now,
                                             const ResultKey& key, const LeaseTerms& lease) {
-  Prepared update(db,
-                  "UPDATE simulations SET input_hash = ? WHERE id = ? AND state = 1 RETURNING "
-                  "is_forced, project",
-                  key.input_hash, id);
-  if (!update.executeStep()) return std::nullopt;
-  const bool is_forced = update.getColumn(0).getInt() != 0;
-  const std::string project = update.getColumn(1).getString();
-  update.executeStep();
+  Prepared query(
+      db, "SELECT is_forced, project, input_hash FROM simulations WHERE id = ? AND state = 1", id);
+  if (!query.executeStep()) return std::nullopt;
+  const bool is_forced = query.getColumn(0).getInt() != 0;
+  const std::string project = query.getColumn(1).getString();
+  if (query.getColumn(2).getString() != key.input_hash) {
+    execute(db, "UPDATE simulations SET input_hash = ? WHERE id = ?", key.input_hash, id);
+  }
   std::optional<std::int64_t> result;
   if (!is_forced) result = result_row(db, project, key);
   StateChange change{.id = id,
