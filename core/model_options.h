@@ -39,7 +39,7 @@ struct ModelOptions {
   bool no_boundary_friction = false;      ///< F_b = 0; asperities still carry load
   bool damping_in_contact_only = false;   ///< c xdot acts only while flanks touch
   bool energy_consistent = false;         ///< adds the parametric torques missing from eq 2
-  bool subtract_contact_point_motion = false;  ///< entrainment seen by the moving footprint
+  bool subtract_contact_point_motion = false;  ///< entrainment relative to the moving footprint
   bool load_dependent_mesh_data = false;       ///< Fourier series and load shares at the torque
   bool tabulated_friction_arms =
       false;  ///< r_fr of the tables, not of the actual sliding direction

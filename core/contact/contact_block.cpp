@@ -20,57 +20,57 @@ namespace HWY_NAMESPACE {
 namespace {
 
 /// Proofs, and what follows from the stress.
-template <class Growth, Digits kDigits>
+template <PressureGrowth Growth, Digits kDigits>
 HWY_INLINE void certify(const Tables& t, ContactBlockResults& block, const Work& work, int i) {
   const Pack base = load(work.base + i), rise = load(work.rise + i);
   const Pack change = load(work.change + i), scaled = load(work.scaled_pressure + i);
   const Pack factor = load(work.factor + i);
   const Pack next_rise = rise * fused(change, fused(change, 0.5, 1), 1);
   const Pack temperature = base + next_rise;
-  Mask solved = (load(work.eligible + i) > 0) & ~(load(work.pending + i) > 0);
+  Mask certified = (load(work.in_range + i) > 0) & ~(load(work.pending + i) > 0);
   // Inside the table.
-  solved = solved & (size(fused(t.factor_scale, factor, t.factor_offset)) <= 1) & (factor > 0.01) &
-           (temperature <= t.hottest);
-  const Mask whole = scaled < t.deepest_pressure;
+  certified = certified & (size(fused(t.factor_scale, factor, t.factor_offset)) <= 1) &
+              (factor > 0.01) & (temperature <= t.maximum_temperature);
+  const Mask whole = scaled < t.maximum_scaled_pressure;
   Pack share = 0, centre = 0;
   if (t.limited) {
     // One place at most where stress and limit meet, and not within rounding of none.
     const Pack excess_end = excess_at_end<Growth>(t, work, i);
-    const Pack excess_rim = load(work.law_base + i) - t.log_limit_at_rim;
-    const Mask clipped = excess_end > 0, all_limited = excess_rim > 0;
+    const Pack excess_edge = load(work.law_base + i) - t.log_limit_at_edge;
+    const Mask clipped = excess_end > 0, all_limited = excess_edge > 0;
     constexpr double kRounding = kDigits == Digits::kFull ? 1e-8 : 1e-6;
-    solved = solved & (size(excess_rim) > kRounding) & (size(excess_end) > kRounding);
+    certified = certified & (size(excess_edge) > kRounding) & (size(excess_end) > kRounding);
     const Mask rising = factor >= t.monotone_factor;
-    solved = solved & (t.falls_then_rises ? rising | ~all_limited : rising);
+    certified = certified & (t.falls_then_rises ? rising | ~all_limited : rising);
     const Mask touched = clipped | all_limited;
     const Pack end = load(work.end + i), cut_change = load(work.cut_change + i);
     const Pack cut = load(work.cut + i) + cut_change;
     const Mask inside = (cut > 1e-2) & (cut <= end);
-    solved = solved & (whole | touched) & (inside | all_limited | ~clipped);
+    certified = certified & (whole | touched) & (inside | all_limited | ~clipped);
     const Pack q = fused(load(work.e_cut + i), fused(cut_change, fused(cut_change, 0.5, 1), 1), -1);
     const Pack part = least(q * load(work.per_scaled + i), 1);
     share = select(all_limited, 1, where(clipped, (1 - part) * (1 + part)));
     centre = as_number(touched);
     // One equilibrium: the rise cannot leave the temperatures for which that is proved.
     const Pack most = fused(load(work.gain + i), load(work.all_limit + i), base);
-    solved = solved & (most <= t.proved_temperature);
+    certified = certified & (most <= t.unique_root_temperature);
   } else {
-    solved = solved & whole;
+    certified = certified & whole;
   }
   const Pack stress = t.isothermal ? load(work.mean + i) : next_rise / load(work.gain + i);
   const Pack viscous = viscous_friction(load(work.viscous_area + i), stress);
   const Pack total = friction(viscous, load(block.boundary_friction + i));
-  solved = solved & (total < 1e200);  // also false for NaN
+  certified = certified & (total < 1e200);  // also false for NaN
   store(viscous, block.viscous_friction + i);
   store(total, block.friction + i);
   store(temperature, block.contact_temperature + i);
   store(stress, block.mean_shear_stress + i);
   store(share, block.limited_area_share + i);
   store(centre, block.limited_at_centre + i);
-  store(as_number(solved), block.solved + i);
+  store(as_number(certified), block.certified + i);
 }
 
-template <class Growth, Digits kDigits>
+template <PressureGrowth Growth, Digits kDigits>
 void solve_with(const Tables& tables, int count, const ContactBlockInputs& in,
                 ContactBlockResults& block) {
   Work work;
@@ -93,13 +93,13 @@ void solve_with(const Tables& tables, int count, const ContactBlockInputs& in,
   for (const int i : active) certify<Growth, kDigits>(tables, block, work, i);
 }
 
-template <class Growth>
+template <PressureGrowth Growth>
 void sample_with(const Tables& tables, const StartSamples& in, double* rise) {
   Work work;
   alignas(64) ContactLanes ignored;
   const ActiveLanes active(kBlockContacts);
   for (const int i : active) {
-    store(1, work.eligible + i);
+    store(1, work.in_range + i);
     store(tables.inlet_temperature, work.base + i);
     store(0, work.start + i);
     store(load(in.gain + i), work.gain + i);
@@ -114,7 +114,7 @@ bool is_roelands(const Tables& tables) {
   return tables.shear.lubricant.pressure_viscosity_law == PressureViscosityLaw::kRoelands;
 }
 
-template <class Growth>
+template <PressureGrowth Growth>
 void solve_with(const Tables& tables, Digits digits, int count, const ContactBlockInputs& in,
                 ContactBlockResults& block) {
   if (digits == Digits::kFull) {

@@ -16,7 +16,7 @@ namespace tribodyn {
 //     Halley's method: first with half of the digits, then, if wanted, with all. Packs of lanes
 //     that have settled take part in no further step.
 //  4. certify() proves for each contact that it has one solution, inside of the tables, and that
-//     the iteration found it; for any other `solved` is 0, and the scalar reference must solve it.
+//     the iteration found it; for any other `certified` is 0, and the scalar kernel must solve it.
 // (J. F. Traub, Iterative Methods for the Solution of Equations, 1964, for Halley's method.)
 
 /// Contacts solved together; the most that fit next to their intermediates in a first-level cache.
@@ -37,7 +37,7 @@ struct alignas(64) ContactBlockResults {
       film_ratio, maximum_pressure, film_load, asperity_load, sliding_speed, shear_rate,
       mean_shear_stress, limited_area_share;
   ContactLanes limited_at_centre;  ///< 1 or 0
-  ContactLanes solved;             ///< 1 or 0: the reference must solve it
+  ContactLanes certified;          ///< 1, or 0: the scalar kernel must solve it
 };
 
 /// Solves the first `count` contacts of a block with the given instructions, which the CPU must

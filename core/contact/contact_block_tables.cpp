@@ -92,24 +92,26 @@ BivariatePolynomial truncated(const RatioSquare& coefficients, double tolerance)
 
 /// The depth ln(1 + c p) of 3 GPa, or of a viscosity 32 e-folds above that at p = 0 and a fold
 /// below the greatest one, at the temperature of the greatest L.
-double deepest_of(const ShearLaw<double>& law, double greatest_factor) {
-  constexpr double kDeepest = 2.79, kMostFolds = 32;
+double maximum_log_pressure_of(const ShearLaw<double>& law, double greatest_factor) {
+  constexpr double kGreatestLogPressure = 2.79, kMostLogGrowth = 32;
   if (law.lubricant.pressure_viscosity_law == PressureViscosityLaw::kRoelands) {
-    return std::min(kDeepest, std::log1p(kMostFolds / std::max(greatest_factor, 1e-3)) / law.index);
+    return std::min(kGreatestLogPressure,
+                    std::log1p(kMostLogGrowth / std::max(greatest_factor, 1e-3)) / law.index);
   }
   const double log_viscosity = greatest_factor - laws::kRoelandsLogViscosity;
   const double temperature = laws::vogel_temperature(law.lubricant.vogel_temperature_coefficient,
                                                      law.lubricant.vogel_reference_temperature,
                                                      log_viscosity - law.log_vogel_prefactor);
-  const double folds =
-      std::min(kMostFolds, laws::log_greatest_viscosity(law.lubricant) - log_viscosity - 1);
+  const double log_growth =
+      std::min(kMostLogGrowth, laws::log_greatest_viscosity(law.lubricant) - log_viscosity - 1);
   const auto excess = [&](double depth) {
     return laws::pressure_growth(law.growth, temperature,
                                  std::expm1(depth) / laws::kRoelandsPressureCoefficient) -
-           folds;
+           log_growth;
   };
-  const double at_end = excess(kDeepest);
-  return at_end <= 0 ? kDeepest : bracketed_root(excess, 0, kDeepest, -folds, at_end);
+  const double at_end = excess(kGreatestLogPressure);
+  return at_end <= 0 ? kGreatestLogPressure
+                     : bracketed_root(excess, 0, kGreatestLogPressure, -log_growth, at_end);
 }
 
 }  // namespace
@@ -122,14 +124,15 @@ bool tabulate_ratio(InstructionSet instruction_set, double least_factor, double 
   tables.factor_offset = -centre / half;
   RatioLanes factor{};
   for (int i = 0; i < kTerms; ++i) factor[i] = centre + half * chebyshev<kTerms>().point[i];
-  double deepest = deepest_of(tables.shear, greatest_factor);
+  double maximum_log_pressure = maximum_log_pressure_of(tables.shear, greatest_factor);
   RatioSquare coefficients;
-  for (int attempt = 0; attempt < 8; ++attempt, deepest *= 0.85) {
-    ratio_coefficients(instruction_set, ratio_rule(), factor, deepest, tables.shear, coefficients);
+  for (int attempt = 0; attempt < 8; ++attempt, maximum_log_pressure *= 0.85) {
+    ratio_coefficients(instruction_set, ratio_rule(), factor, maximum_log_pressure, tables.shear,
+                       coefficients);
     if (!converged(coefficients)) continue;
-    tables.deepest = deepest;
-    tables.deepest_pressure = std::expm1(deepest);
-    tables.depth_scale = 2 / deepest;
+    tables.maximum_log_pressure = maximum_log_pressure;
+    tables.maximum_scaled_pressure = std::expm1(maximum_log_pressure);
+    tables.depth_scale = 2 / maximum_log_pressure;
     tables.depth_offset = -1;
     tables.ratio = truncated(coefficients, 2e-11);
     tables.coarse_ratio = truncated(coefficients, 3e-6);

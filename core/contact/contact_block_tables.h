@@ -45,20 +45,20 @@ struct ContactBlockTables : ContactConstants<double> {
   BoundaryFriction boundary{};   ///< 0: no F_b
   bool no_boundary_friction = false;
 
-  /// False: everything goes to the reference.
-  bool covered = false;
+  /// False: no contact is certified, so that the scalar kernel solves all.
+  bool can_certify = false;
   bool inlet_shear_heating = false;
   bool isothermal = false, limited = false;
 
-  double log_limit_at_rim = 0;    ///< ln tau_L0
-  double limit_slope = 0;         ///< gamma_L/c [Pa]
-  double monotone_factor = 0;     ///< from this L on, ln(tau/tau_L) rises inwards
-  bool falls_then_rises = false;  ///< ln(tau/tau_L) has no maximum inside at any L > 0
-  double proved_temperature = 0;  ///< below it ln tau falls with T at every pressure
-  double hottest = 0;             ///< of the table [K]
-  double deepest = 0;             ///< greatest ln(1 + c p) of the table
+  double log_limit_at_edge = 0;        ///< ln tau_L0
+  double limit_slope = 0;              ///< gamma_L/c [Pa]
+  double monotone_factor = 0;          ///< from this L on, ln(tau/tau_L) rises inwards
+  bool falls_then_rises = false;       ///< ln(tau/tau_L) has no maximum inside at any L > 0
+  double unique_root_temperature = 0;  ///< below it ln tau falls with T at every pressure
+  double maximum_temperature = 0;      ///< of the table [K]
+  double maximum_log_pressure = 0;     ///< greatest ln(1 + c p) of the table
 
-  double deepest_pressure = 0;  ///< the same as c p
+  double maximum_scaled_pressure = 0;  ///< greatest c p of the table
 
   // x = factor_scale L + factor_offset, y = depth_scale s + depth_offset.
   double factor_scale = 0, factor_offset = 0, depth_scale = 0, depth_offset = 0;

@@ -18,7 +18,7 @@ namespace tribodyn {
 namespace HWY_NAMESPACE {
 namespace {
 
-template <class Growth>
+template <GrowthMoments Growth>
 void differentiate_with(const ContactBlockTables& tables, std::size_t count, const Columns& solved,
                         ContactSlopes& slopes) {
   for (std::size_t i = 0; i < count; i += pack_lanes()) {

@@ -32,7 +32,7 @@ double least_steepness(double index, double tau_zero_c, double gamma) {
 
 /// Below it d ln tau/dT <= -(1 - ab) A1/(T - T0)^2 + ab/T < 0 at every pressure, a b = alpha_HN
 /// beta_HN; infinite for a Newtonian fluid.
-double proved_temperature(const Lubricant& oil, bool newtonian) {
+double unique_root_temperature(const Lubricant& oil, bool newtonian) {
   const double product = oil.havriliak_negami_alpha * oil.havriliak_negami_beta;
   if (newtonian || product == 0) return kInfinity;
   if (!(product > 0 && product < 1) || oil.density_temperature_slope > 0) return -kInfinity;
@@ -42,14 +42,14 @@ double proved_temperature(const Lubricant& oil, bool newtonian) {
   return (b + std::sqrt(b * b - t0 * t0)) * (1 - 1e-9);
 }
 
-/// Returns whether the vector code covers the growth of viscosity with pressure of a law other than
-/// eq 31: the growth falls with temperature over the whole table, and at every temperature
-/// ln(tau/tau_L) rises inwards, or falls and then rises. The first is proved, the second is checked
-/// at 8 x 48 temperatures and depths. Sets monotone_factor and falls_then_rises.
-bool has_covered_growth(ContactBlockTables& t, double tau_zero, double gamma) {
+/// Returns whether the vector code can certify contacts under the growth of viscosity with pressure
+/// of a law other than eq 31: the growth falls with temperature over the whole table, and at every
+/// temperature ln(tau/tau_L) rises inwards, or falls and then rises. The first is proved, the
+/// second is checked at 8 x 48 temperatures and depths. Sets monotone_factor and falls_then_rises.
+bool can_certify_growth(ContactBlockTables& t, double tau_zero, double gamma) {
   const GrowthLaw<double>& law = t.shear.growth;
   const double c = laws::kRoelandsPressureCoefficient;
-  if (!laws::pressure_growth_falls(law, t.inlet_temperature, t.deepest_pressure / c)) {
+  if (!laws::pressure_growth_falls(law, t.inlet_temperature, t.maximum_scaled_pressure / c)) {
     return false;
   }
   t.monotone_factor = 0;
@@ -59,11 +59,12 @@ bool has_covered_growth(ContactBlockTables& t, double tau_zero, double gamma) {
   using Number = laws::Dual<double, 1>;
   double colder_factor = kInfinity;
   for (int i = 0; i < kTemperatures; ++i) {
-    const double temperature =
-        t.inlet_temperature + (t.hottest - t.inlet_temperature) * i / (kTemperatures - 1);
+    const double temperature = t.inlet_temperature + (t.maximum_temperature - t.inlet_temperature) *
+                                                         i / (kTemperatures - 1);
     bool rises = false, fell = false;
     for (int j = 0; j <= kDepths; ++j) {
-      const Number pressure = Number::variable(std::expm1(t.deepest * j / kDepths) / c, 0);
+      const Number pressure =
+          Number::variable(std::expm1(t.maximum_log_pressure * j / kDepths) / c, 0);
       const double steepness = laws::pressure_growth(law, Number(temperature), pressure).slope[0];
       const bool rises_here = steepness * (tau_zero + gamma * pressure.value) > gamma;
       if (rises && !rises_here) return false;
@@ -152,7 +153,7 @@ FlankContactBatch::FlankContactBatch(const FlankContactModel& model, Instruction
   const double tau_zero = oil.limiting_shear_stress_at_zero_pressure;
   const double gamma = oil.limiting_shear_stress_coefficient;
   if (t.limited) {
-    t.log_limit_at_rim = std::log(tau_zero);
+    t.log_limit_at_edge = std::log(tau_zero);
     t.limit_slope = gamma / laws::kRoelandsPressureCoefficient;
   }
   if (t.limited && roelands) {
@@ -166,27 +167,27 @@ FlankContactBatch::FlankContactBatch(const FlankContactModel& model, Instruction
   if (!t.shear.newtonian && oil.density_temperature_slope < 0) {
     end_of_density = -oil.density_at_zero_kelvin / oil.density_temperature_slope;
   }
-  t.proved_temperature = proved_temperature(oil, t.shear.newtonian);
-  const bool one_equilibrium = t.isothermal || t.proved_temperature >= end_of_density;
-  if (one_equilibrium) t.proved_temperature = kInfinity;
+  t.unique_root_temperature = unique_root_temperature(oil, t.shear.newtonian);
+  const bool one_equilibrium = t.isothermal || t.unique_root_temperature >= end_of_density;
+  if (one_equilibrium) t.unique_root_temperature = kInfinity;
 
   const auto factor_at = [&](double temperature) {
     return laws::roelands_factor(log_ambient_viscosity(oil, temperature));
   };
-  t.hottest = std::min(t.inlet_temperature + 200, 0.9 * end_of_density);
+  t.maximum_temperature = std::min(t.inlet_temperature + 200, 0.9 * end_of_density);
   const AsPublished& p = options.as_published;
   const bool one_switch_at_most = !t.limited || (tau_zero > 0 && gamma >= 0);
   const bool proved = one_equilibrium || t.limited;
-  t.covered =
-      !p.eq17_atan && !p.eq31_32_logarithm && !p.eq43_44_polynomials &&
-      options.hertz_load == HertzLoad::kFilmLoad && one_switch_at_most && proved &&
-      (t.shear.newtonian || oil.relaxation_time > 0) && t.hottest > t.inlet_temperature + 1 &&
-      std::isfinite(t.log_film) &&
-      std::isnormal(std::exp(log_ambient_viscosity(oil, t.inlet_temperature))) &&
-      tabulate_ratio(instruction_set, factor_at(t.hottest), factor_at(t.inlet_temperature), t) &&
-      (roelands || has_covered_growth(t, tau_zero, gamma));
+  t.can_certify = !p.eq17_atan && !p.eq31_32_logarithm && !p.eq43_44_polynomials &&
+                  options.hertz_load == HertzLoad::kFilmLoad && one_switch_at_most && proved &&
+                  (t.shear.newtonian || oil.relaxation_time > 0) &&
+                  t.maximum_temperature > t.inlet_temperature + 1 && std::isfinite(t.log_film) &&
+                  std::isnormal(std::exp(log_ambient_viscosity(oil, t.inlet_temperature))) &&
+                  tabulate_ratio(instruction_set, factor_at(t.maximum_temperature),
+                                 factor_at(t.inlet_temperature), t) &&
+                  (roelands || can_certify_growth(t, tau_zero, gamma));
   tabulate_asperities(t);
-  if (t.covered && t.limited && !t.isothermal) fit_start(instruction_set, t);
+  if (t.can_certify && t.limited && !t.isothermal) fit_start(instruction_set, t);
   tables_ = std::move(tables);
 }
 
@@ -212,40 +213,40 @@ const char* FlankContactBatch::name(InstructionSet instruction_set) {
 
 namespace {
 
-/// A figure in the caller's arrays, in the reference's solution and in a block.
+/// A figure in the caller's arrays, in the scalar kernel's solution and in a block.
 struct Figure {
   double* FlankContactBatchResults::*to;
   double ContactSolution::*of_reference;
   ContactLanes ContactBlockResults::*of_block;
 };
 using To = FlankContactBatchResults;
-using Reference = ContactSolution;
+using Alone = ContactSolution;
 using Block = ContactBlockResults;
 constexpr Figure kFigures[] = {
-    {&To::friction, &Reference::friction, &Block::friction},
-    {&To::viscous_friction, &Reference::viscous_friction, &Block::viscous_friction},
-    {&To::boundary_friction, &Reference::boundary_friction, &Block::boundary_friction},
-    {&To::contact_temperature, &Reference::contact_temperature, &Block::contact_temperature},
-    {&To::central_film_thickness, &Reference::central_film_thickness, &Block::film_thickness},
-    {&To::film_ratio, &Reference::film_ratio, &Block::film_ratio},
-    {&To::maximum_pressure, &Reference::maximum_pressure, &Block::maximum_pressure},
-    {&To::film_load, &Reference::film_load, &Block::film_load},
-    {&To::asperity_load, &Reference::asperity_load, &Block::asperity_load},
-    {&To::sliding_speed, &Reference::sliding_speed, &Block::sliding_speed},
-    {&To::shear_rate, &Reference::shear_rate, &Block::shear_rate},
-    {&To::mean_shear_stress, &Reference::mean_shear_stress, &Block::mean_shear_stress},
-    {&To::limiting_stress_area_share, &Reference::limiting_stress_area_share,
+    {&To::friction, &Alone::friction, &Block::friction},
+    {&To::viscous_friction, &Alone::viscous_friction, &Block::viscous_friction},
+    {&To::boundary_friction, &Alone::boundary_friction, &Block::boundary_friction},
+    {&To::contact_temperature, &Alone::contact_temperature, &Block::contact_temperature},
+    {&To::central_film_thickness, &Alone::central_film_thickness, &Block::film_thickness},
+    {&To::film_ratio, &Alone::film_ratio, &Block::film_ratio},
+    {&To::maximum_pressure, &Alone::maximum_pressure, &Block::maximum_pressure},
+    {&To::film_load, &Alone::film_load, &Block::film_load},
+    {&To::asperity_load, &Alone::asperity_load, &Block::asperity_load},
+    {&To::sliding_speed, &Alone::sliding_speed, &Block::sliding_speed},
+    {&To::shear_rate, &Alone::shear_rate, &Block::shear_rate},
+    {&To::mean_shear_stress, &Alone::mean_shear_stress, &Block::mean_shear_stress},
+    {&To::limiting_stress_area_share, &Alone::limiting_stress_area_share,
      &Block::limited_area_share},
 };
 
-/// Contact i of the caller's arrays from the reference's solution.
+/// Contact i of the caller's arrays from the scalar kernel's solution.
 void put(const ContactSolution& s, std::size_t i, const FlankContactBatchResults& to) {
   const auto set = [i](auto* array, auto value) {
     if (array != nullptr) array[i] = value;
   };
   for (const Figure& each : kFigures) set(to.*each.to, s.*each.of_reference);
   set(to.limiting_stress_at_centre, s.limiting_stress_at_centre);
-  set(to.by_reference, true);
+  set(to.by_scalar_kernel, true);
   set(to.status, s.status);
 }
 
@@ -261,7 +262,7 @@ void put(const ContactBlockResults& from, int count, Place&& place,
     set(to.*each.to, [&lanes = from.*each.of_block](int n) { return lanes[n]; });
   }
   set(to.limiting_stress_at_centre, [&](int n) { return from.limited_at_centre[n] != 0; });
-  set(to.by_reference, [](int) { return false; });
+  set(to.by_scalar_kernel, [](int) { return false; });
   set(to.status, [](int) { return ContactStatus::kOk; });
 }
 
@@ -309,19 +310,19 @@ std::size_t FlankContactBatch::solve(const ContactGeometries& geometries, std::s
                                      const FlankContactBatchResults& results, Digits digits) const {
   const ContactGeometries& g = geometries;
   const FlankContactBatchConditions& k = conditions;
-  std::size_t by_reference = 0;
-  const auto reference = [&](std::size_t i) {
+  std::size_t by_scalar_kernel = 0;
+  const auto solve_alone = [&](std::size_t i) {
     put(model_.solve({k.load[i], g.radius_x_[first + i], g.radius_y_[first + i], k.velocity_1_x[i],
                       k.velocity_1_y[i], k.velocity_2_x[i], k.velocity_2_y[i]}),
         i, results);
-    ++by_reference;
+    ++by_scalar_kernel;
   };
-  const bool covered = tables_->covered && g.reduced_modulus_ == model_.reduced_modulus() &&
-                       g.hertz_solution_ == model_.options().hertz_solution &&
-                       equal(g.as_published_, model_.options().as_published);
-  if (!covered) {
-    for (std::size_t i = 0; i < count; ++i) reference(i);
-    return by_reference;
+  const bool can_certify = tables_->can_certify && g.reduced_modulus_ == model_.reduced_modulus() &&
+                           g.hertz_solution_ == model_.options().hertz_solution &&
+                           equal(g.as_published_, model_.options().as_published);
+  if (!can_certify) {
+    for (std::size_t i = 0; i < count; ++i) solve_alone(i);
+    return by_scalar_kernel;
   }
 
   // Blocks that are under load all over are read where they are, others are collected first.
@@ -350,7 +351,7 @@ std::size_t FlankContactBatch::solve(const ContactGeometries& geometries, std::s
     put(
         solved, filled, [&](int n) { return place[n]; }, results);
     for (int n = 0; n < filled; ++n) {
-      if (solved.solved[n] == 0) reference(place[n]);
+      if (solved.certified[n] == 0) solve_alone(place[n]);
     }
     filled = 0;
   };
@@ -360,14 +361,14 @@ std::size_t FlankContactBatch::solve(const ContactGeometries& geometries, std::s
       put(
           solved, kBlockContacts, [i](int n) { return i + n; }, results);
       for (int n = 0; n < kBlockContacts; ++n) {
-        if (solved.solved[n] == 0) reference(i + n);
+        if (solved.certified[n] == 0) solve_alone(i + n);
       }
       i += kBlockContacts;
       continue;
     }
     if (k.load[i] <= 0) {
-      reference(i);
-      --by_reference;
+      solve_alone(i);
+      --by_scalar_kernel;
     } else {
       collected.take(inputs(i), filled);
       place[filled] = i;
@@ -376,7 +377,7 @@ std::size_t FlankContactBatch::solve(const ContactGeometries& geometries, std::s
     ++i;
   }
   if (filled > 0) flush();
-  return by_reference;
+  return by_scalar_kernel;
 }
 
 void DifferentiatedContacts::clear(std::size_t room) {

@@ -77,10 +77,10 @@ struct FlankContactBatchResults {
   double* limiting_stress_area_share = nullptr;  ///< [-]
   bool* limiting_stress_at_centre = nullptr;
   ContactStatus* status = nullptr;
-  bool* by_reference = nullptr;  ///< FlankContactModel solved it
+  bool* by_scalar_kernel = nullptr;  ///< FlankContactModel solved it
 };
 
-/// Contacts that FlankContactBatch has solved without the reference, and their derivatives.
+/// Contacts that FlankContactBatch has solved and certified, and their derivatives.
 class DifferentiatedContacts {
  public:
   /// Removes all and makes room for so many.
@@ -118,7 +118,7 @@ class DifferentiatedContacts {
 ///   where R depends on the fluid's Z alone and is a polynomial in two variables, made once.
 /// - The place where tau meets tau_L and the temperature are found by one iteration.
 ///
-/// Handed to the reference, one by one and then equal to it to the last bit:
+/// Handed to the scalar kernel, one by one and then equal to it to the last bit:
 /// - models with the misprints of eqs 17, 31, 32, 43 and 44, with the ellipse from the total load,
 ///   with tau_L0 = 0 or a density that rises with temperature; without limiting stress, fluids that
 ///   may have several thermal equilibria;
@@ -126,8 +126,9 @@ class DifferentiatedContacts {
 ///   machines (1e-10 N, 1e-9 m/s, 1 um); refused ones;
 /// - an unlimited stress above 3 GPa (less where the viscosity rises by more than e^32); T_c more
 ///   than 200 K above the inlet; film ratios between 36.5 and 38.75;
-/// - a stress that is limited at the rim but not everywhere, or within 1e-8 of the limit at rim or
-///   centre (1e-6 with half of the digits); a rise that might lead to several equilibria.
+/// - a stress that is limited at the edge but not everywhere, or within 1e-8 of the limit at the
+///   edge or the centre (1e-6 with half of the digits); a rise that might lead to several
+///   equilibria.
 ///
 /// A contact's result depends on the model, on its own geometry, conditions and start, and on the
 /// instruction set, and on nothing else: the same bits alone or in company, in any place of a batch
@@ -158,13 +159,13 @@ class FlankContactBatch {
 
   /// Solves contacts first ... first + count - 1 of `geometries`; element i of each array belongs
   /// to contact first + i. Results may not overlap conditions. Returns how many contacts under load
-  /// went to the reference.
+  /// went to the scalar kernel.
   std::size_t solve(const ContactGeometries& geometries, std::size_t first, std::size_t count,
                     const FlankContactBatchConditions& conditions,
                     const FlankContactBatchResults& results, Digits digits = Digits::kFull) const;
 
-  /// Fills in the derivatives of contacts that solve() has solved, not by the reference: those that
-  /// ContactSensitivityModel has by conditions, and by ContactLevel instead of by parameters.
+  /// Fills in the derivatives of contacts that solve() has solved, not by the scalar kernel: those
+  /// that ContactSensitivityModel has by conditions, and by ContactLevel instead of by parameters.
   void differentiate(DifferentiatedContacts& contacts) const;
 
  private:

@@ -79,7 +79,7 @@ struct Step {
 };
 
 /// kKept: the stress of the step is a result, not only a way to one.
-template <class Growth, bool kKept>
+template <PressureGrowth Growth, bool kKept>
 HWY_INLINE Step halley_step(const Tables& t, const Work& work, int i) {
   const Pack scaled = load(work.scaled_pressure + i), per_scaled = load(work.per_scaled + i);
   const Pack stress = load(work.stress + i), ratio = load(work.ratio + i);
@@ -88,7 +88,7 @@ HWY_INLINE Step halley_step(const Tables& t, const Work& work, int i) {
   Mask clipped = nowhere(), all_limited = nowhere();
   if (t.limited) {
     clipped = load(work.clipped + i) > 0;
-    all_limited = load(work.law_base + i) > t.log_limit_at_rim;
+    all_limited = load(work.law_base + i) > t.log_limit_at_edge;
   }
   // Where the stress is not cut off, q is c p_max: e_cut - 1 has lost digits of small ones.
   Pack q = e_cut - 1;
@@ -135,7 +135,7 @@ HWY_INLINE Step halley_step(const Tables& t, const Work& work, int i) {
 }
 
 HWY_INLINE Pack room_of(const Tables& t, const Work& work, int i) {
-  return greatest(t.hottest - load(work.base + i), 1e-3);
+  return greatest(t.maximum_temperature - load(work.base + i), 1e-3);
 }
 
 /// Chebyshev polynomials to the third degree.
@@ -160,7 +160,7 @@ HWY_INLINE Cubic cubic(Pack x) {
 HWY_INLINE void start(const Tables& t, Work& work, int i) {
   constexpr Digits kHalf = Digits::kHalf;
   store(load(work.end + i), work.cut + i);
-  store(load(work.eligible + i), work.pending + i);
+  store(load(work.in_range + i), work.pending + i);
   if (t.isothermal) {
     store(0, work.rise + i);
     return;
@@ -195,7 +195,7 @@ HWY_INLINE void start(const Tables& t, Work& work, int i) {
 }
 
 /// ln tau = ln tau_L for s: with tau_L as at the end, then as at that s.
-template <class Growth>
+template <PressureGrowth Growth>
 HWY_INLINE void start_cut(const Tables& t, Work& work, int i) {
   constexpr Digits kHalf = Digits::kHalf;
   const Pack end = load(work.end + i);
@@ -216,7 +216,7 @@ HWY_INLINE void keep_step(const Step& step, Work& work, int i) {
 
 /// Takes a step with half of the digits. Returns false if none of the pack needs another. kKept:
 /// contacts whose step is small stay, and it is still to be added; otherwise they take it.
-template <class Growth, bool kKept>
+template <PressureGrowth Growth, bool kKept>
 HWY_INLINE bool take_coarse_step(const Tables& t, Work& work, int i) {
   constexpr double kClose = kKept ? 5e-4 : 1.5e-3, kCutClose = kKept ? 1e-3 : 4e-3;
   const Pack rise = load(work.rise + i), cut = load(work.cut + i), end = load(work.end + i);
@@ -239,7 +239,7 @@ HWY_INLINE bool take_coarse_step(const Tables& t, Work& work, int i) {
 }
 
 /// The same with all digits. Contacts whose step is small stay, and it is still to be added.
-template <class Growth>
+template <PressureGrowth Growth>
 HWY_INLINE bool take_fine_step(const Tables& t, Work& work, int i) {
   // Newton's error is the square of the step, times a curvature that grows where stress and limit
   // meet at a small angle.
@@ -248,7 +248,7 @@ HWY_INLINE bool take_fine_step(const Tables& t, Work& work, int i) {
   const Step step = halley_step<Growth, true>(t, work, i);
   const Pack weight = fused(4, step.per_slope, 1);
   const Mask pending =
-      (load(work.eligible + i) > 0) &
+      (load(work.in_range + i) > 0) &
       ~((size(step.change) <= kSettled) & (size(step.cut_change) * weight <= kCutSettled));
   keep_step(step, work, i);
   store(as_number(pending), work.pending + i);
@@ -260,7 +260,7 @@ HWY_INLINE bool take_fine_step(const Tables& t, Work& work, int i) {
   return true;
 }
 
-template <class Growth, Digits kDigits>
+template <PressureGrowth Growth, Digits kDigits>
 HWY_NOINLINE void eval_all(const Tables& t, const ActiveLanes& active, bool first, Work& work) {
   for (const int i : active) eval_rheology<kDigits>(t, work, i);
   if (first && t.limited) {
@@ -271,7 +271,7 @@ HWY_NOINLINE void eval_all(const Tables& t, const ActiveLanes& active, bool firs
 }
 
 /// kKept: solve_fine() does not follow.
-template <class Growth, bool kKept>
+template <PressureGrowth Growth, bool kKept>
 HWY_NOINLINE void solve_coarse(const Tables& t, ActiveLanes active, Work& work) {
   for (const int i : active) start(t, work, i);
   constexpr int kMostSteps = 16;
@@ -281,7 +281,7 @@ HWY_NOINLINE void solve_coarse(const Tables& t, ActiveLanes active, Work& work) 
   }
 }
 
-template <class Growth>
+template <PressureGrowth Growth>
 HWY_NOINLINE void solve_fine(const Tables& t, ActiveLanes active, Work& work) {
   for (int n = 0; n < 4 && !active.empty(); ++n) {
     eval_all<Growth, Digits::kFull>(t, active, false, work);

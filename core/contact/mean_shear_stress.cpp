@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <type_traits>
 
 #include "core/numerics/bracketed_root.h"
@@ -15,7 +16,16 @@ constexpr double kC = laws::kRoelandsPressureCoefficient;  // c of the formulas 
 
 double pressure_at(double s) { return std::expm1(s) / kC; }
 
-// ln tau(s) at one temperature grows from its value at p = 0 as one of the following.
+/// How ln tau(s) at one temperature grows from its value `base` at p = 0 under a
+/// pressure-viscosity law: a policy of Law.
+template <class G>
+concept StressGrowth = requires(const G& growth, double base, double s,
+                                const std::array<double, kGrowthArguments>& by_growth) {
+  { growth.log_stress(base, s) } -> std::same_as<double>;
+  { growth.by_depth(s) } -> std::same_as<double>;  // d ln tau/ds
+  // d ln tau_bar/dT from the derivatives by the arguments of the growth.
+  { growth.temperature_slope(by_growth) } -> std::same_as<double>;
+};
 
 /// L (e^(Z s) - 1).
 struct RoelandsStress {
@@ -57,7 +67,7 @@ struct LawStress {
   }
 };
 
-template <class Growth>
+template <StressGrowth Growth>
 struct Law {
   Growth growth;
   double base, base_slope;
@@ -144,13 +154,13 @@ Moment moment(const Law<RoelandsStress>& law, double from, double to) {
   // E-folds of the integrand if it grew all along as it does at its end, where it is steepest:
   // d ln tau/ds there, and two per unit of s from p dp.
   const double steepest = law.growth.steepest(end - law.base) + 2;
-  const double folds = steepest * (to - from);
-  if (folds <= 7.5) {
+  const double log_growth = steepest * (to - from);
+  if (log_growth <= 7.5) {
     add_panel<12>(law, from, to, out);
-  } else if (folds <= 15) {
+  } else if (log_growth <= 15) {
     add_panel<16>(law, from, to, out);
   } else {
-    const int panels = static_cast<int>(std::min(64.0, std::ceil(folds / 20)));
+    const int panels = static_cast<int>(std::min(64.0, std::ceil(log_growth / 20)));
     double left = from;
     for (int i = 1; i <= panels; ++i) {
       const double growth = (i * end + (panels - i) * start) / panels - law.base;
@@ -164,13 +174,13 @@ Moment moment(const Law<RoelandsStress>& law, double from, double to) {
 
 /// Panels of at most 6 e-folds and 0.5 in s, of equal length in s.
 Moment moment(const Law<LawStress>& law, double from, double to) {
-  constexpr double kFolds = 6, kLongest = 0.5;
+  constexpr double kLogGrowth = 6, kLongest = 0.5;
   Moment out;
   const double start = law.log_stress(from), end = law.log_stress(to);
   out.shift = std::max(start, end);
-  const double folds = std::abs(end - start) + 2 * (to - from);
+  const double log_growth = std::abs(end - start) + 2 * (to - from);
   const int panels = static_cast<int>(
-      std::clamp(std::ceil(std::max(folds / kFolds, (to - from) / kLongest)), 1.0, 64.0));
+      std::clamp(std::ceil(std::max(log_growth / kLogGrowth, (to - from) / kLongest)), 1.0, 64.0));
   const auto add_all = [&]<int kCount>(std::integral_constant<int, kCount>) {
     const auto by_arguments =
         laws::by_its_parameters<laws::Dual<double, kCount>>(law.growth.law->growth);
@@ -249,7 +259,7 @@ struct OnLimit {
   double by_zero = 0, by_coefficient = 0;
 };
 
-template <class Growth>
+template <StressGrowth Growth>
 MeanShearStress mean_of(const Law<Growth>& law, double pressure, const Moment& sheared,
                         const OnLimit& on, bool limited_at_centre) {
   const double integral = sheared.value + law.tau_zero * on.by_zero + law.gamma * on.by_coefficient;
@@ -270,7 +280,7 @@ MeanShearStress mean_of(const Law<Growth>& law, double pressure, const Moment& s
   return out;
 }
 
-template <class Growth>
+template <StressGrowth Growth>
 MeanShearStress mean_with(const ShearedFilm& film, double temperature, double& switch_guess) {
   const Law<Growth> law(film, temperature);
   const double end = std::log1p(kC * film.maximum_pressure);
@@ -286,7 +296,7 @@ MeanShearStress mean_with(const ShearedFilm& film, double temperature, double& s
   cuts[cut_count++] = 0;
   double excess_left = law.excess(0).value;
   bool limited = excess_left > 0;
-  const bool limited_at_rim = limited;
+  const bool limited_at_edge = limited;
   for (int i = 1; i < monotone.count; ++i) {
     const double excess_right = law.excess(pieces[i]).value;
     if ((excess_left > 0) != (excess_right > 0)) {
@@ -310,10 +320,10 @@ MeanShearStress mean_with(const ShearedFilm& film, double temperature, double& s
   const int switches = cut_count - 1;
   cuts[cut_count] = end;
 
-  if (switches == 0 && !limited_at_rim) return unlimited();
+  if (switches == 0 && !limited_at_edge) return unlimited();
   Moment sheared;
   OnLimit on;
-  bool on_limit = limited_at_rim;
+  bool on_limit = limited_at_edge;
   for (int i = 0; i < cut_count; ++i, on_limit = !on_limit) {
     if (on_limit) {
       const double p0 = pressure_at(cuts[i]);

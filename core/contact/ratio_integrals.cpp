@@ -13,6 +13,8 @@
 #include "core/numerics/pack-inl.h"
 // NOLINTEND(bugprone-suspicious-include,misc-redundant-expression)
 
+#include <concepts>
+
 #include "core/contact/ratio_integrals.h"
 #include "core/numerics/columns.h"
 
@@ -31,15 +33,16 @@ struct alignas(64) Rule {
   NodeNumbers weight;     // c^2 p dp/ds times that of the rule, at the nodes between
 };
 
-void prepare(const RatioRule& rule, double deepest, Rule& out) {
+void prepare(const RatioRule& rule, double maximum_log_pressure, Rule& out) {
   static_assert(kRatioTerms * kNodes % kColumnLanes == 0);
   for (std::size_t i = 0; i < rule.end.size(); i += pack_lanes()) {
-    const Pack s = deepest * load_any(rule.end.data() + i);
+    const Pack s = maximum_log_pressure * load_any(rule.end.data() + i);
     store(2 / square(exponential_less_one(s)), out.per_square.data() + i);
   }
   for (std::size_t i = 0; i < rule.node.size(); i += pack_lanes()) {
-    const Pack q = exponential_less_one(deepest * load_any(rule.node.data() + i));
-    store(deepest * load_any(rule.weight.data() + i) * fused(q, q, q), out.weight.data() + i);
+    const Pack q = exponential_less_one(maximum_log_pressure * load_any(rule.node.data() + i));
+    store(maximum_log_pressure * load_any(rule.weight.data() + i) * fused(q, q, q),
+          out.weight.data() + i);
   }
 }
 
@@ -49,18 +52,25 @@ struct alignas(64) AtDepths {
   NodeNumbers node;
 
   template <class Function>
-  AtDepths(const RatioRule& rule, double deepest, Function&& x) {
+  AtDepths(const RatioRule& rule, double maximum_log_pressure, Function&& x) {
     for (std::size_t i = 0; i < end.size(); i += pack_lanes()) {
-      store(x(deepest * load_any(rule.end.data() + i)), end.data() + i);
+      store(x(maximum_log_pressure * load_any(rule.end.data() + i)), end.data() + i);
     }
     for (std::size_t i = 0; i < node.size(); i += pack_lanes()) {
-      store(x(deepest * load_any(rule.node.data() + i)), node.data() + i);
+      store(x(maximum_log_pressure * load_any(rule.node.data() + i)), node.data() + i);
     }
   }
 };
 
-/// Growths of ln eta in a pack of lanes, from one depth to another.
-struct RoelandsFolds {
+/// The growths of ln eta under a pressure-viscosity law in a pack of lanes, from the end of one
+/// section of depths to the next end or to a node in between.
+template <class G>
+concept LogGrowth = requires(G& growth, const G& at_end, int j) {
+  { growth.next_end(j) } -> std::same_as<Pack>;
+  { at_end.node(j) } -> std::same_as<Pack>;
+};
+
+struct RoelandsLogGrowth {
   const AtDepths& growth;  // (1 + c p)^Z - 1
   Pack factor;
   double end = 0;
@@ -73,7 +83,7 @@ struct RoelandsFolds {
   HWY_INLINE Pack node(int n) const { return factor * (growth.node[n] - end); }
 };
 
-struct LawFolds {
+struct LawLogGrowth {
   const AtDepths& pressure;  // [Pa]
   const GrowthLaw<double>& law;
   Pack temperature;
@@ -89,16 +99,16 @@ struct LawFolds {
   }
 };
 
-/// folds_at(lane) gives the growths in the pack that begins there.
-template <class FoldsAt>
-void integrate(const Rule& rule, FoldsAt&& folds_at, RatioSquare& values) {
+/// log_growth_at(lane) gives the growths in the pack that begins there.
+template <class LogGrowthAt>
+void integrate(const Rule& rule, LogGrowthAt&& log_growth_at, RatioSquare& values) {
   for (std::size_t lane = 0; lane < values[0].size(); lane += pack_lanes()) {
-    auto folds = folds_at(lane);
+    LogGrowth auto log_growth = log_growth_at(lane);
     Pack integral = 0;
     for (int j = 0; j < kRatioTerms; ++j) {
-      integral = integral * exponential(folds.next_end(j));
+      integral = integral * exponential(log_growth.next_end(j));
       for (int n = j * kNodes; n < (j + 1) * kNodes; ++n) {
-        integral = fused(rule.weight[n], exponential(folds.node(n)), integral);
+        integral = fused(rule.weight[n], exponential(log_growth.node(n)), integral);
       }
       store_any(rule.per_square[j] * integral, values[j].data() + lane);
     }
@@ -123,22 +133,22 @@ void multiply(const RatioSquare& left, const RatioSquare& right, RatioSquare& pr
 
 }  // namespace
 
-void take_coefficients(const RatioRule& rule, const RatioLanes& factor, double deepest,
+void take_coefficients(const RatioRule& rule, const RatioLanes& factor, double maximum_log_pressure,
                        const ShearLaw<double>& law, RatioSquare& coefficients) {
   Rule prepared;
-  prepare(rule, deepest, prepared);
+  prepare(rule, maximum_log_pressure, prepared);
   alignas(64) RatioSquare values, in_s;
   if (law.lubricant.pressure_viscosity_law == PressureViscosityLaw::kRoelands) {
-    const AtDepths growth(rule, deepest,
+    const AtDepths growth(rule, maximum_log_pressure,
                           [&](Pack s) HWY_ATTR { return exponential_less_one(law.index * s); });
     integrate(
         prepared,
         [&](std::size_t lane) HWY_ATTR {
-          return RoelandsFolds{growth, load_any(factor.data() + lane)};
+          return RoelandsLogGrowth{growth, load_any(factor.data() + lane)};
         },
         values);
   } else {
-    const AtDepths pressure(rule, deepest, [](Pack s) HWY_ATTR {
+    const AtDepths pressure(rule, maximum_log_pressure, [](Pack s) HWY_ATTR {
       return exponential_less_one(s) * (1 / kRoelandsPressureCoefficient);
     });
     const double at_zero_factor = kRoelandsLogViscosity + law.log_vogel_prefactor;
@@ -149,7 +159,7 @@ void take_coefficients(const RatioRule& rule, const RatioLanes& factor, double d
               vogel_temperature(law.lubricant.vogel_temperature_coefficient,
                                 law.lubricant.vogel_reference_temperature,
                                 load_any(factor.data() + lane) - at_zero_factor);
-          return LawFolds{pressure, law.growth, temperature};
+          return LawLogGrowth{pressure, law.growth, temperature};
         },
         values);
   }
@@ -165,9 +175,10 @@ HWY_AFTER_NAMESPACE();
 namespace tribodyn {
 
 void ratio_coefficients(InstructionSet instruction_set, const RatioRule& rule,
-                        const RatioLanes& factor, double deepest, const ShearLaw<double>& law,
-                        RatioSquare& coefficients) {
-  TRIBODYN_RETURN_WITH(instruction_set, take_coefficients, rule, factor, deepest, law, coefficients)
+                        const RatioLanes& factor, double maximum_log_pressure,
+                        const ShearLaw<double>& law, RatioSquare& coefficients) {
+  TRIBODYN_RETURN_WITH(instruction_set, take_coefficients, rule, factor, maximum_log_pressure, law,
+                       coefficients)
 }
 
 }  // namespace tribodyn

@@ -23,11 +23,11 @@ struct RatioRule {
   RatioSquare transposed;
 };
 
-/// Coefficients of T_j in s and T_i in L, from R at the points of s in [0, deepest] and at the
-/// Chebyshev points `factor` of L. R is good to 1e-13 while ln eta grows by less than 5 from one
-/// point to the next.
+/// Coefficients of T_j in s and T_i in L, from R at the points of s in [0, maximum_log_pressure]
+/// and at the Chebyshev points `factor` of L. R is good to 1e-13 while ln eta grows by less than 5
+/// from one point to the next.
 void ratio_coefficients(InstructionSet instruction_set, const RatioRule& rule,
-                        const RatioLanes& factor, double deepest, const ShearLaw<double>& law,
-                        RatioSquare& coefficients);
+                        const RatioLanes& factor, double maximum_log_pressure,
+                        const ShearLaw<double>& law, RatioSquare& coefficients);
 
 }  // namespace tribodyn

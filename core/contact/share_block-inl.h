@@ -32,10 +32,10 @@ HWY_INLINE void eval_logarithms(const ContactBlockInputs& in, Work& work, int i)
   const Pack mean_y2 = square(0.5 * (y_1 + y_2));
   const Pack speed2 = entrainment_speed_squared(mean_x2, mean_y2);
   const Pack slide2 = square(x_1 - x_2) + square(y_1 - y_2);
-  const Mask eligible = within(load_all, 1e-10, 1e8) & within(speed2, 1e-14, 1e8) &
+  const Mask in_range = within(load_all, 1e-10, 1e8) & within(speed2, 1e-14, 1e8) &
                         within(slide2, 1e-18, 1e8) & within(curvature_x, 1e-5, 1e6) &
                         within(curvature_y, 1e-5, 1e6);
-  store(as_number(eligible), work.eligible + i);
+  store(as_number(in_range), work.in_range + i);
   store(slide2, work.slide2 + i);
   // 1/R_e = Q_e/U^2, 1/R_s = Q_s/U^2.
   store(logarithm<kDigits>(curvature_along_entrainment(mean_x2, mean_y2, curvature_x, curvature_y)),
@@ -54,10 +54,10 @@ HWY_INLINE void eval_film_under_all(const Tables& t, const ContactBlockInputs& i
   const Pack log_along = load(work.log_along + i), log_load = load(work.log_load + i);
   const Pack log_speed2 = load(work.log_speed2 + i);
   const Pack log_thickness = log_film(t.log_film, log_speed2, log_along - log_speed2, log_load);
-  const Mask eligible = (load(work.eligible + i) > 0) & within(log_thickness, -70, 7);
+  const Mask in_range = (load(work.in_range + i) > 0) & within(log_thickness, -70, 7);
   const Pack film =
       exponential<kDigits>(log_thickness) * side_leakage(log_along - load(work.log_across + i));
-  store(as_number(eligible), work.eligible + i);
+  store(as_number(in_range), work.in_range + i);
   store(film, work.film_under_all + i);
   const Pack per_root = exponential<kDigits>((-1.0 / 3) * log_load);
   store(load_any(in.load + i) * square(per_root), work.load_root + i);
@@ -143,7 +143,7 @@ HWY_INLINE bool newton_step_of_share(const Tables& t, Work& work, int i) {
   store(fall, work.fall + i);
   store(f5_2, work.f5_2 + i);
   store(change, work.last_change + i);
-  const Mask pending = (load(work.eligible + i) > 0) & (ratio_all < kAsperitiesVanish) &
+  const Mask pending = (load(work.in_range + i) > 0) & (ratio_all < kAsperitiesVanish) &
                        ~(size(change) <= kShareSettled<kDigits>);
   // The others stay, so that the last round serves all of the pack.
   store(select(pending, next, r), work.log_share + i);
@@ -168,10 +168,10 @@ HWY_INLINE void finish_load_sharing(const Tables& t, const ContactBlockInputs& i
   Pack change = load(work.last_change + i);
   const Pack film_ratio = load(work.film_ratio + i);
   // Settled, and not beyond the tabulated film ratios unless the asperities have vanished.
-  const Mask eligible =
-      (load(work.eligible + i) > 0) &
+  const Mask in_range =
+      (load(work.in_range + i) > 0) &
       (alone | ((film_ratio < kAsperityEnd) & (size(change) <= kShareSettled<kDigits>)));
-  store(as_number(eligible), work.eligible + i);
+  store(as_number(in_range), work.in_range + i);
 
   change = where(~alone, change);
   const Pack third = load(work.share_root + i) * fused(change, fused(change, 1.0 / 18, 1.0 / 3), 1);

@@ -9,6 +9,8 @@
 
 #include <hwy/highway.h>
 
+#include <concepts>
+
 #include "core/contact/block_work-inl.h"
 #include "core/laws/film-inl.h"
 #include "core/laws/pressure_growth-inl.h"
@@ -20,13 +22,25 @@ namespace tribodyn {
 namespace HWY_NAMESPACE {
 namespace {
 
-// How the stress grows with pressure: policies of the stages here and in heat_block-inl.h, one a
-// pressure-viscosity law: ln tau at depth s = ln(1 + c p) and at the temperature of eval_rheology,
-// which has left its part at p = 0 in law_base and law_base_slope.
+/// How ln tau grows with pressure under a pressure-viscosity law: a policy of the stages here, in
+/// heat_block-inl.h and in contact_block.cpp. Depth s = ln(1 + c p); the temperature is that of
+/// eval_rheology(), which leaves the part at p = 0 in law_base and law_base_slope.
+template <class G>
+concept PressureGrowth = requires(const Tables& t, Work& work, const Work& prepared, Pack depth,
+                                  Pack log_stress, int i) {
+  // Leaves what stays while the temperature is sought.
+  G::template prepare_end<Digits::kFull>(t, depth, work, i);
+  { G::log_stress_at_end(t, prepared, i) } -> std::same_as<Pack>;
+  // ln tau at the cut; leaves what its two slopes consist of.
+  { G::template log_stress_at_cut<Digits::kFull>(t, depth, work, i) } -> std::same_as<Pack>;
+  { G::slope_by_temperature(prepared, i) } -> std::same_as<Pack>;
+  { G::slope_by_depth(t, prepared, i) } -> std::same_as<Pack>;
+  // The depth at which ln tau reaches a value, nearly.
+  { G::depth_of(t, log_stress, prepared, i) } -> std::same_as<Pack>;
+};
 
 /// Roelands: ln tau = law_base + L (e^(Z s) - 1), in closed form throughout.
 struct RoelandsGrowth {
-  /// Leaves what stays while the temperature is sought.
   template <Digits kDigits>
   static HWY_INLINE void prepare_end(const Tables& t, Pack end, Work& work, int i) {
     store(exponential<kDigits>(t.shear.index * end) - 1, work.end_growth + i);
@@ -35,14 +49,12 @@ struct RoelandsGrowth {
     return log_under_pressure(load(work.law_base + i), load(work.factor + i),
                               load(work.end_growth + i));
   }
-  /// Leaves what the slopes below consist of.
   template <Digits kDigits>
   static HWY_INLINE Pack log_stress_at_cut(const Tables& t, Pack cut, Work& work, int i) {
     const Pack e_growth = exponential<kDigits>(t.shear.index * cut);
     store(e_growth, work.e_growth + i);
     return log_under_pressure(load(work.law_base + i), load(work.factor + i), e_growth - 1);
   }
-  /// d ln tau/dT and d ln tau/ds at the cut.
   static HWY_INLINE Pack slope_by_temperature(const Work& work, int i) {
     return fused(load(work.factor_slope + i), load(work.e_growth + i) - 1,
                  load(work.law_base_slope + i));
@@ -50,11 +62,10 @@ struct RoelandsGrowth {
   static HWY_INLINE Pack slope_by_depth(const Tables& t, const Work& work, int i) {
     return load(work.factor + i) * t.shear.index * load(work.e_growth + i);
   }
-  /// The depth at which ln tau reaches a value, nearly.
   static HWY_INLINE Pack depth_of(const Tables& t, Pack log_stress, const Work& work, int i) {
     const Pack per_factor = 1 / load(work.factor + i);
-    const Pack folds = greatest((log_stress - load(work.law_base + i)) * per_factor, 1e-3);
-    return logarithm<Digits::kHalf>(folds + 1) * (1 / t.shear.index);
+    const Pack log_growth = greatest((log_stress - load(work.law_base + i)) * per_factor, 1e-3);
+    return logarithm<Digits::kHalf>(log_growth + 1) * (1 / t.shear.index);
   }
 };
 
@@ -99,25 +110,25 @@ struct LawGrowth {
 };
 
 /// The shear rate, and logarithms and powers that stay while the temperature is sought.
-template <class Growth, Digits kDigits>
+template <PressureGrowth Growth, Digits kDigits>
 HWY_INLINE void prepare_shear(const Tables& t, Pack slide, Pack film, Pack pressure,
                               double* shear_rate, Work& work, int i) {
-  const double rim_limit = t.shear.lubricant.limiting_shear_stress_at_zero_pressure;
+  const double edge_limit = t.shear.lubricant.limiting_shear_stress_at_zero_pressure;
   const Pack scaled = kRoelandsPressureCoefficient * pressure;
   const Pack inverse = 1 / (scaled * film);
   const Pack rate = slide * scaled * inverse;
   store(rate, shear_rate + i);
   store(film * inverse, work.per_scaled + i);
-  const Pack end_pressure = least(scaled, t.deepest_pressure);
+  const Pack end_pressure = least(scaled, t.maximum_scaled_pressure);
   const Pack end = logarithm<kDigits>(end_pressure + 1);
   store(logarithm<kDigits>(rate), work.log_shear_rate + i);
   store(scaled, work.scaled_pressure + i);
   store(end, work.end + i);
   Growth::template prepare_end<kDigits>(t, end, work, i);
   if (t.limited) {
-    store(logarithm<kDigits>(limiting_shear_stress(rim_limit, t.limit_slope, end_pressure)),
+    store(logarithm<kDigits>(limiting_shear_stress(edge_limit, t.limit_slope, end_pressure)),
           work.end_log_limit + i);
-    store(mean_limiting_shear_stress(rim_limit, t.limit_slope, scaled), work.all_limit + i);
+    store(mean_limiting_shear_stress(edge_limit, t.limit_slope, scaled), work.all_limit + i);
   }
 }
 
@@ -132,13 +143,13 @@ HWY_INLINE void eval_rheology(const Tables& t, Work& work, int i) {
   store(law.base_slope, work.law_base_slope + i);
 }
 
-template <class Growth>
+template <PressureGrowth Growth>
 HWY_INLINE Pack excess_at_end(const Tables& t, const Work& work, int i) {
   return Growth::log_stress_at_end(t, work, i) - load(work.end_log_limit + i);
 }
 
 /// The stress where it is cut off, at the place where it met tau_L or at the centre.
-template <class Growth, Digits kDigits>
+template <PressureGrowth Growth, Digits kDigits>
 HWY_INLINE void eval_stress(const Tables& t, Work& work, int i) {
   Pack cut = load(work.end + i);
   if (t.limited) {

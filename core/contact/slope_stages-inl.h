@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 
 #include "core/contact/contact_slopes.h"
@@ -214,7 +215,7 @@ HWY_NOINLINE void eval_shared_contact(const ContactBlockTables& t, const Columns
   stages.gain = line.gain;
 }
 
-/// int tau c p d(c p) from the rim to a depth s = ln(1 + c p), and the same weighted with the
+/// int tau c p d(c p) from the edge to a depth s = ln(1 + c p), and the same weighted with the
 /// derivatives of ln tau by the arguments of its growth.
 struct Moments {
   Pack value;
@@ -224,15 +225,22 @@ struct Moments {
 constexpr int kMomentNodes = 16;
 
 /// E-folds of the integrand that one panel of so many nodes integrates to 1e-10 (relative).
-constexpr double kMomentFolds = 20;
+constexpr double kMomentLogGrowth = 20;
 
-HWY_INLINE int panels_of(Pack folds, double most) {
+HWY_INLINE int panels_of(Pack log_growth, double most) {
   int panels = 1;
-  while (panels < 64 && any(folds > panels * most)) ++panels;
+  while (panels < 64 && any(log_growth > panels * most)) ++panels;
   return panels;
 }
 
-// Policies: ln tau grows from the rim to s by one of these.
+/// How ln tau grows from the edge to a depth under a pressure-viscosity law, and the moments of
+/// that: a policy of eval_mean_stress().
+template <class G>
+concept GrowthMoments = requires(const ContactBlockTables& t, Pack temperature, Pack base,
+                                 Pack factor, Pack depth, Moments& out) {
+  { G::log_stress_at(t, temperature, base, factor, depth) } -> std::same_as<Pack>;
+  G::eval(t, temperature, base, factor, depth, out);
+};
 
 struct RoelandsMoments {
   static HWY_INLINE Pack log_stress_at(const ContactBlockTables& t, Pack, Pack base, Pack factor,
@@ -244,7 +252,7 @@ struct RoelandsMoments {
                               Moments& out) {
     const double index = t.shear.index;
     const Pack end_growth = exponential(index * end) - 1;
-    const int panels = panels_of((index * factor * (end_growth + 1) + 2) * end, kMomentFolds);
+    const int panels = panels_of((index * factor * (end_growth + 1) + 2) * end, kMomentLogGrowth);
     const auto& rule = gauss_legendre<kMomentNodes>();
     Pack left = 0, value = 0, by_factor = 0, by_index = 0;
     for (int panel = 1; panel <= panels; ++panel) {
@@ -294,11 +302,11 @@ struct LawMoments {
   /// The fewest nodes, in twos, by the e-folds of the integrand if it grew all along as at its end,
   /// where it is steepest: the integrals then err by less than 1e-8 (relative; greatest of 3,000
   /// films under improved Yasutomi laws with random parameters).
-  static HWY_INLINE Rule rule_for(Pack folds) {
-    if (!any(folds > 4)) return gauss_rule<8>();
-    if (!any(folds > 8)) return gauss_rule<10>();
-    if (!any(folds > 12)) return gauss_rule<12>();
-    if (!any(folds > 16)) return gauss_rule<14>();
+  static HWY_INLINE Rule rule_for(Pack log_growth) {
+    if (!any(log_growth > 4)) return gauss_rule<8>();
+    if (!any(log_growth > 8)) return gauss_rule<10>();
+    if (!any(log_growth > 12)) return gauss_rule<12>();
+    if (!any(log_growth > 16)) return gauss_rule<14>();
     return gauss_rule<16>();
   }
   /// Panels that are even in s.
@@ -307,9 +315,9 @@ struct LawMoments {
     const auto end_pressure =
         exponential_less_one(Dual<Pack, 1>::variable(end, 0)) * (1 / kRoelandsPressureCoefficient);
     const Pack steepness = pressure_growth(t.shear.growth, constant<1>(at), end_pressure).slope[0];
-    const Pack folds = (steepness + 2) * end;
-    const int panels = panels_of(folds, kMomentFolds);
-    const Rule rule = rule_for(folds * (1.0 / panels));
+    const Pack log_growth = (steepness + 2) * end;
+    const int panels = panels_of(log_growth, kMomentLogGrowth);
+    const Rule rule = rule_for(log_growth * (1.0 / panels));
     const auto law = by_its_parameters<Number>(t.shear.growth);
     const Number temperature = Number::variable(at, 0);
     const Pack width = end * (1.0 / panels);
@@ -333,7 +341,7 @@ struct LawMoments {
 
 /// Derivatives of ln tau_bar at the temperature found. The place where the stress meets tau_L
 /// follows from the area share on it.
-template <class Growth>
+template <GrowthMoments Growth>
 HWY_NOINLINE void eval_mean_stress(const ContactBlockTables& t, const Columns& solved,
                                    SlopeStages& stages, std::size_t i) {
   const auto row = [&](int r) HWY_ATTR { return load_any(solved[r] + i); };

@@ -31,7 +31,7 @@ void SolvedContacts::resize(std::size_t count) {
   if (count <= size_) return;
   rows_.resize(kFilmLoadRow + 1, count);
   limiting_stress_at_centre_ = std::make_unique<bool[]>(count);
-  by_reference_ = std::make_unique<bool[]>(count);
+  by_scalar_kernel_ = std::make_unique<bool[]>(count);
   size_ = count;
 }
 
@@ -39,7 +39,7 @@ void SolvedContacts::resize_for_overwrite(std::size_t count) {
   if (count <= size_) return;
   rows_.resize_for_overwrite(kFilmLoadRow + 1, count);
   limiting_stress_at_centre_ = std::make_unique_for_overwrite<bool[]>(count);
-  by_reference_ = std::make_unique_for_overwrite<bool[]>(count);
+  by_scalar_kernel_ = std::make_unique_for_overwrite<bool[]>(count);
   size_ = count;
 }
 
@@ -48,7 +48,7 @@ FlankContactBatchResults SolvedContacts::results() {
   for (std::size_t r = 0; r < std::size(kSolvedRows); ++r) out.*kSolvedRows[r].array = rows_[r];
   out.film_load = rows_[kFilmLoadRow];
   out.limiting_stress_at_centre = limiting_stress_at_centre_.get();
-  out.by_reference = by_reference_.get();
+  out.by_scalar_kernel = by_scalar_kernel_.get();
   return out;
 }
 

@@ -24,12 +24,14 @@ class SolvedContacts {
   const double* column(double ContactFigures::*figure) const;
   /// Sets the figures that are kept; those that FlankContactModel::complete() fills in are left.
   void copy(std::size_t i, ContactFigures& to) const;
-  double film_load(std::size_t i) const;                               ///< W_EHL [N]
-  bool by_reference(std::size_t i) const { return by_reference_[i]; }  ///< not by the vector code
+  double film_load(std::size_t i) const;  ///< W_EHL [N]
+  bool by_scalar_kernel(std::size_t i) const {
+    return by_scalar_kernel_[i];
+  }  ///< not by the vector code
 
  private:
   Columns rows_;
-  std::unique_ptr<bool[]> limiting_stress_at_centre_, by_reference_;
+  std::unique_ptr<bool[]> limiting_stress_at_centre_, by_scalar_kernel_;
   std::size_t size_ = 0;
 };
 

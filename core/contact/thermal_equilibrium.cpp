@@ -56,11 +56,11 @@ ThermalEquilibrium solve_thermal_equilibrium(const ShearedFilm& film, double bas
   if (!(gain > 0)) return {1, base, cold};
 
   const Lubricant& oil = film.law->lubricant;
-  double hottest = std::numeric_limits<double>::infinity();
+  double highest_temperature = std::numeric_limits<double>::infinity();
   if (!film.law->newtonian && oil.density_temperature_slope < 0) {
-    hottest = (1 - 1e-9) * -oil.density_at_zero_kelvin / oil.density_temperature_slope;
+    highest_temperature = (1 - 1e-9) * -oil.density_at_zero_kelvin / oil.density_temperature_slope;
   }
-  if (base >= hottest) return {0, base, cold};
+  if (base >= highest_temperature) return {0, base, cold};
 
   const double log_gain = std::log(gain);
   // H(y) = y - ln(gain tau_bar(base + e^y)), y = ln(T - base).
@@ -77,7 +77,7 @@ ThermalEquilibrium solve_thermal_equilibrium(const ShearedFilm& film, double bas
 
   // Where tau_bar falls from base on, the rise is at most gain tau_bar(base).
   const double unheated = log_gain + cold.log_value;
-  const double highest = std::min(unheated, std::log(hottest - base));
+  const double highest = std::min(unheated, std::log(highest_temperature - base));
   if (std::isfinite(highest) && provably_falling(film, base, base + std::exp(highest))) {
     if (highest < unheated && balance(highest, stress).value < 0) return {0, base, cold};
     double lower = -std::numeric_limits<double>::infinity(), upper = highest;
@@ -106,8 +106,9 @@ ThermalEquilibrium solve_thermal_equilibrium(const ShearedFilm& film, double bas
     return answer(0.5 * (lower + upper), 1);
   }
 
-  // Scan ln(T - base) from far below any root to the hottest temperature allowed.
-  const double top = std::isfinite(hottest) ? std::log(hottest - base) : std::log(1e7);
+  // Scan ln(T - base) from far below any root to the highest temperature allowed.
+  const double top =
+      std::isfinite(highest_temperature) ? std::log(highest_temperature - base) : std::log(1e7);
   const double bottom = std::min(top, unheated) - 40;
   constexpr int kScan = 400;
   const auto value = [&](double y) { return balance(y, stress).value; };

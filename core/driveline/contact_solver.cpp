@@ -2,16 +2,16 @@
 
 namespace tribodyn {
 
-ContactSolver::ContactSolver(const FlankContactModel& reference, ContactTally& tally)
-    : reference_(reference),
+ContactSolver::ContactSolver(const FlankContactModel& model, ContactTally& tally)
+    : model_(model),
       batch_(nullptr),
-      geometries_(reference.reduced_modulus(), reference.options()),
+      geometries_(model.reduced_modulus(), model.options()),
       tally_(tally) {}
 
 ContactSolver::ContactSolver(const FlankContactBatch& batch, ContactTally& tally)
-    : reference_(batch.model()),
+    : model_(batch.model()),
       batch_(&batch),
-      geometries_(reference_.reduced_modulus(), reference_.options(), kFlankPairs),
+      geometries_(model_.reduced_modulus(), model_.options(), kFlankPairs),
       tally_(tally) {
   solved_.resize_for_overwrite(kFlankPairs);
 }
@@ -25,7 +25,7 @@ ContactStatus ContactSolver::solve(const std::array<ContactConditions, kFlankPai
       out[k] = ContactFigures{};
       continue;
     }
-    if (batch_ == nullptr) out[k] = reference_.solve(conditions[k]);
+    if (batch_ == nullptr) out[k] = model_.solve(conditions[k]);
     ++tally_.solutions;
     if (refusal == ContactStatus::kOk) refusal = out[k].status;
   }
@@ -56,7 +56,7 @@ void ContactSolver::solve_together(const std::array<ContactConditions, kFlankPai
     out[k] = {};
     solved_.copy(k, out[k]);
     out[k].status = status[k];
-    reference_.complete(conditions[k], out[k]);
+    model_.complete(conditions[k], out[k]);
   }
 }
 

@@ -15,13 +15,13 @@ struct ContactTally {
   ContactStatus take_refusal() { return std::exchange(refusal, ContactStatus::kOk); }
 };
 
-/// Solves the contacts of one instant after another: one by one by the reference, or together by
-/// the batch, which leaves out outputs that no record holds. Holds storage: one per march.
+/// Solves the contacts of one instant after another: one by one by the scalar kernel, or together
+/// by the batch, which leaves out outputs that no record holds. Holds storage: one per march.
 /// Allocates nothing once it is made.
 class ContactSolver {
  public:
   /// Keeps the references; adds to the solutions of `tally`.
-  ContactSolver(const FlankContactModel& reference, ContactTally& tally);
+  ContactSolver(const FlankContactModel& model, ContactTally& tally);
   ContactSolver(const FlankContactBatch& batch, ContactTally& tally);
 
   /// Flank pairs without load have no contact: their figures are empty. Returns the first refusal,
@@ -33,8 +33,8 @@ class ContactSolver {
   void solve_together(const std::array<ContactConditions, kFlankPairs>& conditions,
                       std::array<ContactFigures, kFlankPairs>& out);
 
-  const FlankContactModel& reference_;
-  const FlankContactBatch* batch_;  // null: by the reference
+  const FlankContactModel& model_;
+  const FlankContactBatch* batch_;  // null: by the scalar kernel
   ContactGeometries geometries_;
   SolvedContacts solved_;
   ContactTally& tally_;

@@ -186,11 +186,9 @@ ContactStatus GearPairSystem::evaluate(double phase, int interval, const Contact
   const ContactStatus refusal = contacts.solve(conditions, out.contact);
   for (int k = 0; k < kFlankPairs; ++k) {
     if (!(out.load[k] > 0)) continue;
-    const ContactFigures& contact = out.contact[k];
     const FlankMotion& motion = out.motion[k];
-    out.pinion_friction_torque += motion.pinion_friction_arm * contact.friction;  // (eq 29)
-    out.gear_friction_torque += motion.gear_friction_arm * contact.friction;
-    out.loss_power += motion.sliding_speed * contact.friction;
+    add_flank_friction(motion.pinion_friction_arm, motion.gear_friction_arm, motion.sliding_speed,
+                       out.contact[k].friction, out);
   }
   return refusal;
 }

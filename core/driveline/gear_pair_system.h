@@ -84,9 +84,9 @@ struct Instant : Mechanics {
   std::array<ContactFigures, kFlankPairs> contact{};
 };
 
-/// The 4-DoF system of eqs 1 to 6 on the mesh functions of eqs 8 to 11, with friction (eqs 28, 29)
-/// in the loop: a piecewise smooth system, one vector field for each contact regime. Immutable,
-/// safe for concurrent use; evaluation allocates nothing and throws nothing.
+/// The 4-DoF system of driveline/motion-inl.h on the mesh functions of gear/mesh_data.h, with the
+/// friction of the flanks in the loop: a piecewise smooth system, one vector field for each contact
+/// regime. Immutable, safe for concurrent use; evaluation allocates nothing and throws nothing.
 class GearPairSystem {
  public:
   /// Keeps references: mesh and dynamics must outlive it.

@@ -55,6 +55,16 @@ struct MechanicsOf {
 };
 using Mechanics = MechanicsOf<double>;
 
+/// Adds the friction [N] of a flank pair to the friction torques and the loss power of `sums`: its
+/// lever arms [m] and sliding speed [m/s] as in FlankMotion.
+template <class Sums>
+inline void add_flank_friction(double pinion_arm, double gear_arm, double sliding_speed,
+                               double friction, Sums& sums) {
+  sums.pinion_friction_torque += pinion_arm * friction;  // (eq 29)
+  sums.gear_friction_torque += gear_arm * friction;
+  sums.loss_power += sliding_speed * friction;
+}
+
 /// Partial derivatives of the equations of motion at one instant, by the states and by the friction
 /// arms. Real: double or a pack.
 template <class Real>

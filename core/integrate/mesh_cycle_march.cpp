@@ -56,8 +56,8 @@ void throw_if_refused(ContactStatus status) {
 void march_mesh_cycle(const GearPairSystem& system, const MarchScales& scales,
                       const MarchOptions& options, ContactSolver& contacts, SectionPoint& at,
                       SolverWork& work) {
-  PhaseSystem<false> phases(system, at.torques, scales, at.regime, contacts);
-  DormandPrinceWithEvents<PhaseSystem<false>> march(phases, options);
+  MeshCycleSystem<false> phases(system, at.torques, scales, at.regime, contacts);
+  DormandPrinceWithEvents<MeshCycleSystem<false>> march(phases, options);
   at.state[kTime] = at.state[kLossWork] = at.state[kLossShareSquared] = 0;
   double phase = 0;
   march.run(phase, at.state, 1.0);

@@ -34,11 +34,11 @@ struct GapEvent {
 
 void throw_if_refused(ContactStatus status);
 
-/// The gear pair as a System of DormandPrinceWithEvents, over progress through a mesh cycle from 0
-/// to 1: mesh phase, but stretched where a flank pair takes or gives up its load (GradedPhase).
-/// kRecord adds the integrals of RecordComponent.
+/// The gear pair as a System of DormandPrinceWithEvents, over a variable s from 0 to 1 in
+/// a mesh cycle: mesh phase, but stretched where a flank pair takes or gives up its load
+/// (GradedPhase). kRecord adds the integrals of RecordComponent.
 template <bool kRecord>
-class PhaseSystem {
+class MeshCycleSystem {
  public:
   static constexpr int kSize =
       kRecord ? static_cast<int>(kRecordComponents) : static_cast<int>(kMarchComponents);
@@ -46,8 +46,8 @@ class PhaseSystem {
   using State = std::array<double, kSize>;
 
   /// From mesh phase 0 in a regime. Keeps the references.
-  PhaseSystem(const GearPairSystem& system, const Torques& torques, const MarchScales& scales,
-              ContactRegime regime, ContactSolver& contacts)
+  MeshCycleSystem(const GearPairSystem& system, const Torques& torques, const MarchScales& scales,
+                  ContactRegime regime, ContactSolver& contacts)
       : system_(system), torques_(torques), scales_(scales), contacts_(contacts), regime_(regime) {
     for (int i = 0; i < kSize; ++i) {
       scale_[i] = scales.of(system.mesh(), i);
@@ -55,14 +55,14 @@ class PhaseSystem {
     piece_ = GradedPhase(0, 0, next_breakpoint(0), takes_load(), gives_load());
   }
 
-  /// Where the march is in the mesh cycle [cycles], and back; of the piece that it is in.
-  double phase(double progress) const { return piece_.phase(progress); }
-  double progress(double phase) const { return piece_.progress(phase); }
+  /// Mesh phase [cycles] at s, and its inverse, in the present piece.
+  double phase(double s) const { return piece_.phase(s); }
+  double s_of(double phase) const { return piece_.s_of(phase); }
   ContactRegime regime() const { return regime_; }
   /// Of the mesh tables.
   int interval() const { return interval_; }
 
-  void derivative(double progress, const State& y, State& dy) {
+  void derivative(double s, const State& y, State& dy) {
     constexpr double kNoRate = std::numeric_limits<double>::quiet_NaN();  // fails the step
     if (std::isfinite(y[kPinionSpeed])) pinion_speed_ = y[kPinionSpeed];
     if (std::isfinite(y[kPinionShaftSpeed])) shaft_speed_ = y[kPinionShaftSpeed];
@@ -71,13 +71,13 @@ class PhaseSystem {
       dy.fill(kNoRate);
       return;
     }
-    refusal_ = system_.evaluate(phase(progress), interval_, regime_, y.data(), contacts_, instant_);
+    refusal_ = system_.evaluate(phase(s), interval_, regime_, y.data(), contacts_, instant_);
     if constexpr (kRecord) {
       system_.record_derivative(y.data(), instant_, regime_, torques_, dy.data());
     } else {
       system_.derivative(y.data(), instant_, torques_, dy.data());
     }
-    const double slope = piece_.slope(progress);
+    const double slope = piece_.slope(s);
     for (double& rate : dy) rate *= slope;
     // A refused contact fails the step: the wild stages of one that is too long mean nothing.
     if (refusal_ != ContactStatus::kOk) dy.fill(kNoRate);
@@ -100,28 +100,28 @@ class PhaseSystem {
     throw_if_refused(refusal_);
   }
 
-  void events(double progress, const State& y, std::array<double, kEvents>& g) const {
-    g = system_.events(system_.at_phase(phase(progress)), regime_, y.data(), scales_.length,
+  void events(double s, const State& y, std::array<double, kEvents>& g) const {
+    g = system_.events(system_.at_phase(phase(s)), regime_, y.data(), scales_.length,
                        scales_.torque / system_.mesh().mean_pinion_contact_radius());
   }
 
-  void on_event(int index, double progress, const State& y) {
-    const double at_phase = phase(progress);
+  void on_event(int index, double s, const State& y) {
+    const double at_phase = phase(s);
     const ContactRegime before = regime_;
     regime_ = system_.regime_after(index, system_.at_phase(at_phase), before, y.data());
     if (gap_events != nullptr && (before.side == 0) != (regime_.side == 0)) {
       gap_events->push_back({at_phase, y[kTime], regime_.side == 0});
     }
     const bool load_begins = regime_.side == before.side && regime_.loaded;  // from zero
-    piece_ = GradedPhase(progress, at_phase, next_breakpoint(progress), load_begins, gives_load());
+    piece_ = GradedPhase(s, at_phase, next_breakpoint(s), load_begins, gives_load());
   }
 
   double next_breakpoint(double) const {
     return static_cast<double>(interval_ + 1) / system_.mesh().intervals();
   }
-  void on_breakpoint(double progress) {
+  void on_breakpoint(double s) {
     ++interval_;
-    piece_ = GradedPhase(progress, progress, next_breakpoint(progress), takes_load(), gives_load());
+    piece_ = GradedPhase(s, s, next_breakpoint(s), takes_load(), gives_load());
   }
   double scale(int i) const { return scale_[i]; }
   /// The load of all ends where the event is, like a power: friction goes like W^0.74 there.

@@ -319,20 +319,21 @@ double expand_in_rows(const CycleDerivatives& derivatives, const double* section
 }
 
 void gather_in_lanes(const StepBlock& block, const GridContacts& contacts,
-                     const CycleResponse& response, Columns& seen) {
+                     const CycleResponse& response, Columns& conditions) {
   const int count = static_cast<int>(contacts.node.size());
   // What the contacts of a node share, where the contact is.
   for (int i = 0; i < count; ++i) {
     const int node = contacts.node[i];
     const Columns& at = node % 2 == 0 ? response.start : response.middle;
-    seen[kGatheredLoad][i] = at[kMeshForceRow][node / 2];
-    seen[kGatheredPinionX][i] = at[kPinionSpeed][node / 2];
-    seen[kGatheredGearX][i] = at[kGearSpeed][node / 2];
+    conditions[kGatheredLoad][i] = at[kMeshForceRow][node / 2];
+    conditions[kGatheredPinionX][i] = at[kPinionSpeed][node / 2];
+    conditions[kGatheredGearX][i] = at[kGearSpeed][node / 2];
   }
   const ModelOptions& options = block.system.options();
   for (int i = 0; i < count; i += pack_lanes()) {
     const auto flank = [&](int row) HWY_ATTR { return load_any(contacts.kinematics[row] + i); };
-    const auto put = [&](GatheredRow row, Pack value) HWY_ATTR { store_any(value, seen[row] + i); };
+    const auto put = [&](GatheredRow row, Pack value)
+                         HWY_ATTR { store_any(value, conditions[row] + i); };
     const FlankKinematicsOf<Pack> kinematics{
         .load_share = flank(kLoadShareRow),
         .radius_x = 0,  // with the geometries of the contacts
@@ -345,12 +346,12 @@ void gather_in_lanes(const StepBlock& block, const GridContacts& contacts,
         .contact_point_velocity_y = flank(kContactPointVelocityYRow),
         .pinion_friction_arm = flank(kPinionArmRow),
         .gear_friction_arm = flank(kGearArmRow)};
-    const Pack pinion_speed = load_any(seen[kGatheredPinionX] + i);
+    const Pack pinion_speed = load_any(conditions[kGatheredPinionX] + i);
     FlankMotionOf<Pack> motion;
-    set_flank_motion(kinematics, pinion_speed, load_any(seen[kGatheredGearX] + i),
+    set_flank_motion(kinematics, pinion_speed, load_any(conditions[kGatheredGearX] + i),
                      options.tabulated_friction_arms, motion);
     put(kGatheredLoad,
-        kinematics.load_share * greatest(block.side * load_any(seen[kGatheredLoad] + i), 0));
+        kinematics.load_share * greatest(block.side * load_any(conditions[kGatheredLoad] + i), 0));
     put(kGatheredSlidingSpeed, motion.sliding_speed);
     put(kGatheredPinionArm, motion.pinion_friction_arm);
     put(kGatheredGearArm, motion.gear_friction_arm);
@@ -395,8 +396,8 @@ double expand_section_update(InstructionSet instruction_set, const CycleDerivati
 
 void gather_contact_conditions(InstructionSet instruction_set, const StepBlock& block,
                                const GridContacts& contacts, const CycleResponse& response,
-                               Columns& seen) {
-  TRIBODYN_RETURN_WITH(instruction_set, gather_in_lanes, block, contacts, response, seen)
+                               Columns& conditions) {
+  TRIBODYN_RETURN_WITH(instruction_set, gather_in_lanes, block, contacts, response, conditions)
 }
 
 }  // namespace tribodyn

@@ -106,6 +106,6 @@ enum GatheredRow {
 /// Gathers the conditions of the grid's contacts, one lane each.
 void gather_contact_conditions(InstructionSet instruction_set, const StepBlock& block,
                                const GridContacts& contacts, const CycleResponse& response,
-                               Columns& seen);
+                               Columns& conditions);
 
 }  // namespace tribodyn

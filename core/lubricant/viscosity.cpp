@@ -60,9 +60,9 @@ void check_pressure_growth(const Lubricant& lubricant, double temperature,
 }
 
 void check_greatest_viscosity(const Lubricant& lubricant, double temperature) {
-  constexpr double kLeastFolds = 16;
+  constexpr double kLeastLogGrowth = 16;
   const double greatest = laws::log_greatest_viscosity(lubricant);
-  if (greatest - log_ambient_viscosity(lubricant, temperature) >= kLeastFolds) return;
+  if (greatest - log_ambient_viscosity(lubricant, temperature) >= kLeastLogGrowth) return;
   throw Refusal("PARAMETER_OUT_OF_RANGE",
                 "the pressure-viscosity law is too near its glass transition: the viscosity of " +
                     number_text(ambient_viscosity(lubricant, temperature)) + " Pa s at " +

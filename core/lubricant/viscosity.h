@@ -71,22 +71,22 @@ void check_greatest_viscosity(const Lubricant& lubricant, double temperature);
 template <class Real>
 Real reciprocal_asymptotic_of_growth(const GrowthLaw<Real>& law, const Real& temperature) {
   constexpr int kNodes = 16;
-  constexpr double kFoldsPerPanel = 4, kMostFolds = 40, kSmallPressure = 1e6;
+  constexpr double kLogGrowthPerPanel = 4, kMostLogGrowth = 40, kSmallPressure = 1e6;
   const auto& rule = gauss_legendre<kNodes>();
   const auto growth = [&](double pressure) {
     return laws::pressure_growth(law, temperature, Real(pressure));
   };
-  const double panel = kFoldsPerPanel * kSmallPressure / laws::value_of(growth(kSmallPressure));
+  const double panel = kLogGrowthPerPanel * kSmallPressure / laws::value_of(growth(kSmallPressure));
   Real integral = 0.0;
-  double folds = 0;
-  for (double from = 0; folds < kMostFolds; from += panel) {
+  double log_growth = 0;
+  for (double from = 0; log_growth < kMostLogGrowth; from += panel) {
     for (int n = 0; n < kNodes; ++n) {
       integral = integral +
                  panel * rule.weight(n) * laws::exponential(-growth(from + panel * rule.node(n)));
     }
-    const double before = folds;
-    folds = laws::value_of(growth(from + panel));
-    if (!(folds > before + 1e-3)) break;
+    const double before = log_growth;
+    log_growth = laws::value_of(growth(from + panel));
+    if (!(log_growth > before + 1e-3)) break;
   }
   return 1 / integral;
 }

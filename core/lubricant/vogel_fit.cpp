@@ -179,12 +179,12 @@ VogelFit finish(const Table& table, double reference_temperature, const Prior* p
   fit.reduced_chi_square = fit.degrees_of_freedom > 0 ? law.squares / fit.degrees_of_freedom : 0;
   fit.reference_temperature_assumed = prior != nullptr;
 
-  // Standard deviations by which the Jacobian is scaled: what is stated, widened by what is seen;
-  // or what is seen alone.
+  // Standard deviations by which the Jacobian is scaled: what is stated, widened by what is
+  // observed; or what is observed alone.
   double widening = 1;
   if (fit.degrees_of_freedom > 0) {
-    const double seen = std::sqrt(fit.reduced_chi_square);
-    widening = table.stated || prior ? std::max(1.0, seen) : seen;
+    const double observed = std::sqrt(fit.reduced_chi_square);
+    widening = table.stated || prior ? std::max(1.0, observed) : observed;
   }
   Eigen::MatrixXd jacobian(count + (prior ? 1 : 0), 3);
   jacobian.topRows(count).col(0) = table.deviation.inverse();

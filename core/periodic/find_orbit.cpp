@@ -70,8 +70,8 @@ bool is_half_as_long(const PeriodicProblem& problem, const PeriodicOrbit& orbit)
   return difference < 1e-3;
 }
 
-/// The search for one orbit: on one grid after another, or on the grid whose error the reference
-/// orbits give.
+/// The search for one orbit: on one grid after another, or on the grid whose error the
+/// orbits under Coulomb's friction give.
 class GridRefinement {
  public:
   /// `cycles_left`: mesh cycles that may be integrated; reduced also where an orbit is known
@@ -96,7 +96,7 @@ class GridRefinement {
 
   std::optional<PeriodicOrbit> refine() {
     const double of_oscillations =
-        (problem_.tolerance >= kToleranceOfFewSteps && search_.references == nullptr
+        (problem_.tolerance >= kToleranceOfFewSteps && search_.coulomb_orbits == nullptr
              ? kFewStepsPerOscillation
              : kStepsPerOscillation) *
         mesh_oscillations(system_, problem_.mean_pinion_speed);
@@ -106,13 +106,13 @@ class GridRefinement {
     };
     const bool loose = problem_.tolerance >= kLooseTolerance && search_.try_contact_first;
     least_ = steps_from(loose ? 12 : 24);
-    if (search_.references != nullptr && problem_.tolerance >= kLooseTolerance) {
-      if (auto found = solve_by_reference(least_)) return found;
+    if (search_.coulomb_orbits != nullptr && problem_.tolerance >= kLooseTolerance) {
+      if (auto found = solve_from_coulomb_orbit(least_)) return found;
       if (is_over_) return std::nullopt;
       repels_ = doubles_ = false;
     }
     const bool very_loose =
-        loose && problem_.tolerance >= kVeryLooseTolerance && search_.references == nullptr;
+        loose && problem_.tolerance >= kVeryLooseTolerance && search_.coulomb_orbits == nullptr;
     const int intervals = system_.mesh().intervals();
     StepSequence sequence(intervals, very_loose ? steps_from(8) : least_);
     constexpr double kUnknown = std::numeric_limits<double>::infinity();
@@ -170,40 +170,40 @@ class GridRefinement {
   }
 
   /// Solves on the one grid whose error is known from the same orbit under Coulomb's friction.
-  /// Returns nullopt if the reference does not decide.
-  std::optional<PeriodicOrbit> solve_by_reference(int least) {
+  /// Returns nullopt if that orbit does not decide.
+  std::optional<PeriodicOrbit> solve_from_coulomb_orbit(int least) {
     const bool in_contact = options_.bilateral_contact;
     if (options_.bilateral_contact) {
-      const auto& references = references_now(least);
-      if (references.empty()) return std::nullopt;
-      if (references.front().least_pressing_force >= 0) return polish_from_reference(references);
-      if (references.front().least_pressing_force > -kLittleTension) return std::nullopt;
+      const auto& orbits = coulomb_orbits_now(least);
+      if (orbits.empty()) return std::nullopt;
+      if (orbits.front().least_pressing_force >= 0) return polish_from_coulomb_orbit(orbits);
+      if (orbits.front().least_pressing_force > -kLittleTension) return std::nullopt;
       options_.bilateral_contact = false;
     }
     cycles_left_ -= search_.few_cycles * search_.period;
     options_.first_cycles = search_.few_cycles;
     std::optional<PeriodicOrbit> found;
-    if (cycles_left_ >= 0) found = polish_from_reference(references_now(least));
+    if (cycles_left_ >= 0) found = polish_from_coulomb_orbit(coulomb_orbits_now(least));
     options_.bilateral_contact = in_contact;
     options_.first_cycles = 0;
     return found;
   }
 
-  const std::vector<PeriodicOrbit>& references_now(int least) {
-    return search_.references->find(problem_, options_, origin_, least);
+  const std::vector<PeriodicOrbit>& coulomb_orbits_now(int least) {
+    return search_.coulomb_orbits->find(problem_, options_, origin_, least);
   }
 
-  /// Solves from the first reference whose steps are short enough.
-  std::optional<PeriodicOrbit> polish_from_reference(const std::vector<PeriodicOrbit>& references) {
-    const auto doubt = [](const PeriodicOrbit& reference) {
-      return kReferenceCaution * reference.estimated_error;
+  /// Solves from the first of the orbits whose steps are short enough.
+  std::optional<PeriodicOrbit> polish_from_coulomb_orbit(const std::vector<PeriodicOrbit>& orbits) {
+    const auto doubt = [](const PeriodicOrbit& orbit) {
+      return kCoulombErrorFactor * orbit.estimated_error;
     };
-    const auto fits = std::find_if(references.begin(), references.end(), [&](const auto& each) {
+    const auto fits = std::find_if(orbits.begin(), orbits.end(), [&](const auto& each) {
       return doubt(each) <= kShareOfSteps * problem_.tolerance;
     });
-    if (fits == references.end()) return std::nullopt;
+    if (fits == orbits.end()) return std::nullopt;
     const MeshGrid& grid = problem_.grids.with_steps(fits->steps_per_mesh_cycle);
-    // Computed here, so that all copies of the reference hold it.
+    // Computed here, so that all copies of the orbit hold it.
     fits->jacobian->flip_margin();
     fits->jacobian->floquet_radius_below(1 - margin(problem_, search_.period));
     orbit_ = *fits;
@@ -451,7 +451,7 @@ std::optional<PeriodicOrbit> find_orbit(const PeriodicProblem& problem, const Or
     next.try_contact_first = false;
     next.few_cycles = next.first_cycles = kTransientPeriods;
     next.renew_friction = true;
-    next.references = nullptr;
+    next.coulomb_orbits = nullptr;
   }
 }
 

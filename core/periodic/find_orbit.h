@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "core/integrate/solver_work.h"
+#include "core/periodic/coulomb_orbits.h"
 #include "core/periodic/periodic_problem.h"
-#include "core/periodic/reference_orbits.h"
 
 namespace tribodyn {
 
@@ -34,7 +34,7 @@ struct OrbitSearch {
   int maximum_mesh_cycles = 4000;     ///< integrated in search of an orbit
   bool allow_transient_march = true;  ///< further tries, at last after hundreds of periods
   bool renew_friction = false;  ///< during the transient: the attractor may depend on friction
-  ReferenceOrbits* references = nullptr;  ///< shared by lubricants, to start from; may be null
+  CoulombOrbits* coulomb_orbits = nullptr;  ///< shared by lubricants, to start from; may be null
 };
 
 /// The number of oscillations of the mesh on its mean stiffness in a mesh cycle.

@@ -126,12 +126,12 @@ bool OrbitContacts::see(const OrbitPiece& piece, int part, ContactsAt& out) {
     contact.temperature = figures.contact_temperature;
     const bool both_move = (velocity[0].value != 0 || velocity[1].value != 0) &&
                            (velocity[2].value != 0 || velocity[3].value != 0);
-    if (solved.by_reference(index) || !both_move) {
-      contact.lane = -1 - static_cast<int>(references_.size());
-      references_.push_back(
+    if (solved.by_scalar_kernel(index) || !both_move) {
+      contact.lane = -1 - static_cast<int>(of_scalar_kernel_.size());
+      of_scalar_kernel_.push_back(
           model_.at(conditions, solved.film_load(index), figures.contact_temperature));
-      if (references_.back().status != SensitivityStatus::kOk) return false;
-      one_sided_ = one_sided_ || references_.back().one_sided;
+      if (of_scalar_kernel_.back().status != SensitivityStatus::kOk) return false;
+      one_sided_ = one_sided_ || of_scalar_kernel_.back().one_sided;
     } else {
       const ContactGeometries* geometries = &off_grid_;
       std::size_t place = 0;
@@ -173,7 +173,7 @@ void OrbitContacts::add_up(ContactsAt& at) const {
     const auto slopes_of = [&](const Columns& rows,
                                const ContactDerivatives ContactSensitivity::*of) {
       if (c.lane >= 0) return by_motion(c, [&](int n) { return rows[n][c.lane]; });
-      const ContactDerivatives& derivatives = references_[-1 - c.lane].*of;
+      const ContactDerivatives& derivatives = of_scalar_kernel_[-1 - c.lane].*of;
       return by_motion(c, [&](int n) { return derivatives.by_input(kConditionInputs[n]); });
     };
     const ArmSlopes friction = slopes_of(slopes.friction, &ContactSensitivity::friction);
@@ -278,7 +278,7 @@ OrbitContacts::ByParameters OrbitContacts::by_parameters() const {
 
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     if (contacts_[i].lane >= 0) continue;
-    const ContactSensitivity& each = references_[-1 - contacts_[i].lane];
+    const ContactSensitivity& each = of_scalar_kernel_[-1 - contacts_[i].lane];
     const Parameters friction(each.friction.by.data());
     for (int group = 0; group < kGroups; ++group) {
       for (int f = 0; f < kAdjointLanes; ++f) {

@@ -84,7 +84,8 @@ class OrbitContacts {
   std::vector<Contact> contacts_;
   DifferentiatedContacts vectors_;
   ContactGeometries off_grid_;
-  std::vector<ContactSensitivity> references_;  // of contacts that the reference has solved
+  std::vector<ContactSensitivity>
+      of_scalar_kernel_;  // of contacts that the scalar kernel has solved
   std::array<std::vector<AdjointRow>, kGroups> friction_weight_;
   std::vector<double> film_ratio_weight_, temperature_weight_;
 };

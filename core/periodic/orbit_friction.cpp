@@ -76,10 +76,9 @@ SolvedPieces solved_pieces(const GearPairSystem& system, const MeshGrid& grid,
                      ContactFigures& solution = at.contact[k];
                      contacts.copy(contact++, solution);
                      model.complete(conditions, solution);
-                     at.pinion_friction_torque +=
-                         at.motion[k].pinion_friction_arm * solution.friction;
-                     at.gear_friction_torque += at.motion[k].gear_friction_arm * solution.friction;
-                     at.loss_power += at.motion[k].sliding_speed * solution.friction;
+                     const FlankMotion& motion = at.motion[k];
+                     add_flank_friction(motion.pinion_friction_arm, motion.gear_friction_arm,
+                                        motion.sliding_speed, solution.friction, at);
                    });
     }
   }
@@ -187,17 +186,20 @@ bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>
       const Sample& place = at[part];
       if (first_[i] + part == next) {
         ++next;
-        loss = 0;
-        FrictionArms torque;
+        struct {
+          double pinion_friction_torque = 0, gear_friction_torque = 0, loss_power = 0;
+        } sums;
         for (int n = place.first; n < place.first + place.count; ++n) {
-          torque.pinion += gathered_[kGatheredPinionArm][n] * contact_friction[n];
-          torque.gear += gathered_[kGatheredGearArm][n] * contact_friction[n];
-          loss += gathered_[kGatheredSlidingSpeed][n] * contact_friction[n];
+          add_flank_friction(gathered_[kGatheredPinionArm][n], gathered_[kGatheredGearArm][n],
+                             gathered_[kGatheredSlidingSpeed][n], contact_friction[n], sums);
         }
+        loss = sums.loss_power;
         // Across a gap it goes from the value before to that after: no jump where a flank meets.
         if (place.load > light) {
-          friction.add(p.phase + 0.5 * part * p.length,
-                       {torque.pinion / place.load, torque.gear / place.load}, place.load);
+          friction.add(
+              p.phase + 0.5 * part * p.length,
+              {sums.pinion_friction_torque / place.load, sums.gear_friction_torque / place.load},
+              place.load);
         }
       }
       if (p.regime.side != 0) {

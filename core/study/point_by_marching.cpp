@@ -123,7 +123,7 @@ ContactRegime record_response(const GearPairSystem& system, ContactSolver& conta
                               const MarchScales& scales, ResponseRecord& record,
                               HistorySampler& history, SolverWork& work,
                               const std::function<bool(double)>& progress) {
-  using Phases = PhaseSystem<true>;
+  using Phases = MeshCycleSystem<true>;
   constexpr int kSize = Phases::kSize;
   Phases::State y{};
   std::copy(steady.state.begin(), steady.state.end(), y.begin());
@@ -153,7 +153,7 @@ ContactRegime record_response(const GearPairSystem& system, ContactSolver& conta
     const double end = place->phase(step.start + step.length);
     while (history.wanted() && history.next_phase() < cycle + end) {
       const double inside = history.next_phase() - cycle;
-      const double theta = (place->progress(inside) - step.start) / step.length;
+      const double theta = (place->s_of(inside) - step.start) / step.length;
       const auto at = step.at(std::clamp(theta, 0.0, 1.0));
       evaluate(inside, at, samples[0]);
       history.add(cycle + inside, at.data(), samples[0], steady.torques);

@@ -3,7 +3,7 @@
 #include <functional>
 #include <optional>
 
-#include "core/driveline/section_state.h"
+#include "core/periodic/carried_state.h"
 #include "core/study/history.h"
 
 namespace tribodyn {
@@ -43,16 +43,6 @@ enum class SteadyStateMethod {
   /// or as the march would be where a contact is refused at the quasi-static start.
   kShooting,
   kMarch,  ///< marched until it repeats
-};
-
-/// A neighbour's steady state, to start from. Speeds and wind-up are shifted to the new point.
-struct CarriedState {
-  SectionState section_state;
-  double mean_pinion_speed = 0;  ///< [rad/s]
-  double pinion_torque = 0;      ///< T_s there [N m]
-  double wheel_torque = 0;       ///< T_w there [N m]
-  int period = 1;                ///< of the response there [mesh cycles]; 0: none found
-  bool contact_loss = false;     ///< there
 };
 
 struct PointOptions {

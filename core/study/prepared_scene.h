@@ -5,7 +5,7 @@
 #include "core/contact/flank_contact_batch.h"
 #include "core/driveline/gear_pair_system.h"
 #include "core/integrate/mesh_grid.h"
-#include "core/periodic/reference_orbits.h"
+#include "core/periodic/coulomb_orbits.h"
 #include "core/reduced/quasi_static.h"
 #include "core/study/scene.h"
 
@@ -24,7 +24,7 @@ class PreparedGearSet {
   const GearPairSystem& system() const { return system_; }
   MeshGrids& grids() { return grids_; }
   /// For studies that meet the same speeds and loads with many lubricants.
-  ReferenceOrbits& reference_orbits() { return reference_orbits_; }
+  CoulombOrbits& coulomb_orbits() { return coulomb_orbits_; }
   QuasiStaticScreen& quasi_static_screen() { return quasi_static_screen_; }
 
  private:
@@ -32,7 +32,7 @@ class PreparedGearSet {
   MeshData mesh_;
   GearPairSystem system_;
   MeshGrids grids_;
-  ReferenceOrbits reference_orbits_;
+  CoulombOrbits coulomb_orbits_;
   QuasiStaticScreen quasi_static_screen_;
 };
 

@@ -11,7 +11,7 @@
 namespace tribodyn {
 namespace {
 
-/// Samples the history: solves the equilibrium anew at each phase, by the reference kernel. Throws
+/// Samples the history: solves the equilibrium anew at each phase, by the scalar kernel. Throws
 /// Cancelled, and the refusal of a contact.
 void sample_quasi_static(const PeriodicProblem& problem, PeriodicOrbit& solution,
                          HistorySampler& history) {

@@ -33,7 +33,7 @@ PointFigures figures_of(const PointProblem& problem, const PeriodicOrbit& orbit,
   return out;
 }
 
-enum class StepErrors { kByShorterSteps, kByReference };
+enum class StepErrors { kByShorterSteps, kByCoulombOrbit };
 
 /// Returns nullopt if neither the quasi-static model nor shooting finds the response.
 std::optional<PointFigures> find_figures(PreparedScene& prepared,
@@ -54,7 +54,8 @@ std::optional<PointFigures> find_figures(PreparedScene& prepared,
   if (options.model == PointModel::kQuasiStatic) return std::nullopt;
   std::optional<OrbitSearch> search = search_from(problem, options.start, std::nullopt);
   if (!search) return std::nullopt;
-  if (step_errors == StepErrors::kByReference) search->references = &gear_set.reference_orbits();
+  if (step_errors == StepErrors::kByCoulombOrbit)
+    search->coulomb_orbits = &gear_set.coulomb_orbits();
   SolverWork work;
   std::optional<SectionPoint> aperiodic;
   const std::optional<PeriodicOrbit> orbit =
@@ -111,7 +112,7 @@ PointFigures solve_point_figures(PreparedScene& prepared, const OperatingConditi
 
 PointFigures screen_point(PreparedScene& prepared, const OperatingCondition& condition,
                           const PointOptions& options) {
-  return figures_at(prepared, condition, options, StepErrors::kByReference);
+  return figures_at(prepared, condition, options, StepErrors::kByCoulombOrbit);
 }
 
 }  // namespace tribodyn

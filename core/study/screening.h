@@ -38,7 +38,7 @@ PointFigures solve_point_figures(PreparedScene& prepared, const OperatingConditi
                                  const PointOptions& options);
 
 /// The same for one of many lubricants on one prepared gear set, all at the same few speeds and
-/// loads. The orbit under Coulomb's friction is solved for once for all of them (ReferenceOrbits);
+/// loads. The orbit under Coulomb's friction is solved for once for all of them (CoulombOrbits);
 /// each lubricant starts from it and is solved for on one grid, whose error that orbit gives. A
 /// result is the same bits whichever lubricants came before. Points after the first at a speed and
 /// load take half the time where twelve steps a mesh cycle are enough, and little less than alone

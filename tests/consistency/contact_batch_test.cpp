@@ -59,19 +59,19 @@ std::ostream& operator<<(std::ostream& out, const Worst& worst) {
   return out << worst.full << ", with half of the digits " << worst.half;
 }
 
-/// Compares every instruction set with the reference, with all and with half of the digits. Returns
-/// how many contacts the last one left to the reference with all digits.
+/// Compares every instruction set with the scalar kernel, with all and with half of the digits.
+/// Returns how many contacts the last one left to the scalar kernel with all digits.
 std::size_t expect_agreement(const ContactCase& c, const std::vector<ContactConditions>& conditions,
                              Worst* worst = nullptr) {
   const FlankContactModel model = c.model();
   ContactArrays arrays(conditions, c.solid, c.options);
   std::vector<ContactSolution> reference;
   for (const ContactConditions& k : conditions) reference.push_back(model.solve(k));
-  std::size_t by_reference = 0;
+  std::size_t by_scalar_kernel = 0;
   for (const InstructionSet set : supported_instruction_sets()) {
     SCOPED_TRACE(FlankContactBatch::name(set));
     for (const Digits digits : {Digits::kHalf, Digits::kFull}) {
-      by_reference = arrays.solve(FlankContactBatch(model, set), digits);
+      by_scalar_kernel = arrays.solve(FlankContactBatch(model, set), digits);
       double most = 0;
       for (std::size_t i = 0; i < conditions.size(); ++i) {
         const double negligible = digits == Digits::kFull ? 0 : 1e-7;
@@ -87,7 +87,7 @@ std::size_t expect_agreement(const ContactCase& c, const std::vector<ContactCond
       of_digits = std::max(of_digits, most);
     }
   }
-  return by_reference;
+  return by_scalar_kernel;
 }
 
 std::size_t expect_agreement(const ContactCase& c) { return expect_agreement(c, {c.conditions}); }
@@ -96,7 +96,7 @@ TEST(ContactBatch, RandomStates) {
   constexpr int kCases = kShortRun ? 40 : 1000, kEach = 20;
   Draw draw(71);
   SCOPED_TRACE(draw.seed());
-  std::size_t by_reference = 0;
+  std::size_t by_scalar_kernel = 0;
   Worst worst;
   for (int n = 0; n < kCases; ++n) {
     SCOPED_TRACE("case " + std::to_string(n));
@@ -111,16 +111,16 @@ TEST(ContactBatch, RandomStates) {
     std::vector<ContactConditions> conditions;
     for (int i = 0; i < kEach; ++i) conditions.push_back(random_contact_case(draw).conditions);
     try {
-      by_reference += expect_agreement(c, conditions, &worst);
+      by_scalar_kernel += expect_agreement(c, conditions, &worst);
     } catch (const Refusal&) {
       --n;  // a fluid without a model
     }
   }
-  RecordProperty("share_by_reference", std::to_string(1.0 * by_reference / (kCases * kEach)));
+  RecordProperty("share_by_reference", std::to_string(1.0 * by_scalar_kernel / (kCases * kEach)));
   RecordProperty("greatest_difference", std::to_string(worst.full));
-  std::cout << "left to the reference: " << 100.0 * by_reference / (kCases * kEach)
+  std::cout << "left to the scalar kernel: " << 100.0 * by_scalar_kernel / (kCases * kEach)
             << " %, greatest difference " << worst << "\n";
-  EXPECT_LT(by_reference, kCases * kEach / 2);
+  EXPECT_LT(by_scalar_kernel, kCases * kEach / 2);
 }
 
 TEST(ContactBatch, RealisticContactsNeverNeedTheReference) {
@@ -163,7 +163,7 @@ TEST(ContactBatch, RandomStatesUnderTheImprovedYasutomiLaw) {
   constexpr int kCases = kShortRun ? 40 : 400, kEach = 20;
   Draw draw(75);
   SCOPED_TRACE(draw.seed());
-  std::size_t by_reference = 0;
+  std::size_t by_scalar_kernel = 0;
   Worst worst;
   for (int n = 0; n < kCases; ++n) {
     SCOPED_TRACE("case " + std::to_string(n));
@@ -178,18 +178,18 @@ TEST(ContactBatch, RandomStatesUnderTheImprovedYasutomiLaw) {
     c.options.inlet_shear_heating = n % 3 == 1;
     std::vector<ContactConditions> conditions;
     for (int i = 0; i < kEach; ++i) conditions.push_back(random_contact_case(draw).conditions);
-    by_reference += expect_agreement(c, conditions, &worst);
+    by_scalar_kernel += expect_agreement(c, conditions, &worst);
   }
-  std::cout << "left to the reference: " << 100.0 * by_reference / (kCases * kEach)
+  std::cout << "left to the scalar kernel: " << 100.0 * by_scalar_kernel / (kCases * kEach)
             << " %, greatest difference " << worst << "\n";
-  EXPECT_LT(by_reference, kCases * kEach / 2);
+  EXPECT_LT(by_scalar_kernel, kCases * kEach / 2);
 }
 
 // The table of the law ends near 1 GPa in cold oil: a contact beyond it whose stress is nearly
-// nowhere limited goes to the reference.
+// nowhere limited goes to the scalar kernel.
 TEST(ContactBatch, RealisticContactsUnderTheImprovedYasutomiLawRarelyNeedTheReference) {
   Worst worst;
-  std::size_t by_reference = 0, all = 0;
+  std::size_t by_scalar_kernel = 0, all = 0;
   for (const double sump : {20.0, 40.0, 90.0}) {
     const Scene scene = reference_scene(1, sump);
     ContactCase c;
@@ -199,13 +199,13 @@ TEST(ContactBatch, RealisticContactsUnderTheImprovedYasutomiLawRarelyNeedTheRefe
     for (double speed = 20; speed <= 140; speed += kShortRun ? 40 : 10) {
       SCOPED_TRACE("sump " + std::to_string(sump) + ", " + std::to_string(speed) + " km/h");
       const RealisticContacts contacts = realistic_contacts(scene, speed, 40);
-      by_reference += expect_agreement(c, contacts.conditions, &worst);
+      by_scalar_kernel += expect_agreement(c, contacts.conditions, &worst);
       all += contacts.conditions.size();
     }
   }
-  std::cout << by_reference << " of " << all << " left to the reference, greatest difference "
-            << worst << "\n";
-  EXPECT_LT(by_reference, all / 100);
+  std::cout << by_scalar_kernel << " of " << all
+            << " left to the scalar kernel, greatest difference " << worst << "\n";
+  EXPECT_LT(by_scalar_kernel, all / 100);
 }
 
 TEST(ContactBatch, SameBitsAloneAndInAnyCompany) {

@@ -245,11 +245,11 @@ double difference_side_by_side(const ContactCase& c, InstructionSet set) {
   const FlankContactModel model = c.model();
   const FlankContactBatch batch(model, set);
   ContactArrays arrays({c.conditions}, c.solid, c.options);
-  bool by_reference = false;
+  bool by_scalar_kernel = false;
   FlankContactBatchResults results = arrays.results();
-  results.by_reference = &by_reference;
+  results.by_scalar_kernel = &by_scalar_kernel;
   batch.solve(arrays.geometries(), 0, 1, arrays.conditions(), results);
-  if (arrays.solution(0).status != ContactStatus::kOk || by_reference) return -1;
+  if (arrays.solution(0).status != ContactStatus::kOk || by_scalar_kernel) return -1;
   DifferentiatedContacts contacts;
   contacts.clear(1);
   contacts.add(arrays.geometries(), 0, c.conditions,
@@ -291,7 +291,8 @@ double difference_side_by_side(const ContactCase& c, InstructionSet set) {
   return largest;
 }
 
-// The solution of the vector code is within 1e-10 of the reference's, and derivatives magnify that.
+// The solution of the vector code is within 1e-10 of the scalar kernel's, and derivatives magnify
+// that.
 constexpr double kSideBySide = 1e-7;
 
 TEST(ContactSensitivity, IsTheSameSideBySideOnRandomStates) {

@@ -316,7 +316,7 @@ struct Works {
 /// Marches ten mesh cycles with all integrals. `disturb` may change the state first.
 template <class Disturb>
 Works works_of_ten_cycles(Bench& bench, const PointResult& point, Disturb disturb) {
-  using Phases = PhaseSystem<true>;
+  using Phases = MeshCycleSystem<true>;
   const Torques torques = torques_of(point);
   Phases::State y{};
   bench.system.to_march(point.section_state, y.data());

@@ -31,7 +31,7 @@ TEST(LimitingStress, ZeroAtZeroPressure) {
     c.conditions.load = load;
     const ContactSolution s = c.solve();
     ASSERT_EQ(s.status, ContactStatus::kOk);
-    EXPECT_GE(s.limiting_stress_switches, 1);  // the rim sits on the limit, which is 0 there
+    EXPECT_GE(s.limiting_stress_switches, 1);  // the edge sits on the limit, which is 0 there
     EXPECT_LE(difference(s.mean_shear_stress, brute_force_stress(c, s)), 1e-10);
   }
 }

@@ -63,7 +63,7 @@ TEST(ContactFigures, ThatFollowFromOthersAreThoseOfTheReference) {
     EXPECT_EQ(figures.friction_coefficient, s.friction_coefficient);
     EXPECT_EQ(figures.specific_sliding_1, s.specific_sliding_1);
     EXPECT_EQ(figures.specific_sliding_2, s.specific_sliding_2);
-    // The root that the reference finds of eq 38 is that good.
+    // The root that the scalar kernel finds of eq 38 is that good.
     EXPECT_NEAR(figures.flash_temperature_rise, s.flash_temperature_rise,
                 1e-7 * s.contact_temperature);
   }

@@ -451,6 +451,39 @@ TEST(SweepSensitivities, AreThoseOfThePointsOnTheBranchThatIsFollowed) {
   }
 }
 
+// The quiet response ends between 71.4 and 71.5 km/h.
+TEST(SweepSensitivities, AreThoseOfEachSideOfAJumpAndMoveNoEndOfABranch) {
+  const Scene scene = reference_scene();
+  const std::vector<double> speeds{70.6 / 3.6, 71.2 / 3.6, 71.5 / 3.6};
+  SweepOptions options;
+  const std::vector<SweepPoint> plain = sweep_speed(scene, speeds, 0, options);
+  options.point.sensitivities = true;
+  const std::vector<SweepPoint> curve = sweep_speed(scene, speeds, 0, options);
+  ASSERT_TRUE(plain[2].branch_end && curve[2].branch_end);
+  EXPECT_EQ(curve[2].branch_end->followed_to, plain[2].branch_end->followed_to);
+  EXPECT_EQ(curve[2].branch_end->gone_at, plain[2].branch_end->gone_at);
+  EXPECT_FALSE(curve[1].branch_end);
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    ASSERT_TRUE(curve[i].result && curve[i].result->sensitivities) << i;
+    EXPECT_EQ(curve[i].result->contact_loss, i == 2) << "quiet before the jump, loud after it";
+    EXPECT_EQ(curve[i].result->inefficiency_rms, plain[i].result->inefficiency_rms);
+  }
+  PointOptions loud = options.point;
+  loud.start = PointStart::kLargeVibration;
+  OperatingCondition beyond = cruise(71.5);
+  beyond.vehicle_speed = speeds[2];
+  const PointResult alone = solve_operating_point(scene, beyond, loud);
+  ASSERT_TRUE(alone.sensitivities && alone.contact_loss);
+  const PointSensitivities& found = *curve[2].result->sensitivities;
+  for (std::size_t i = 0; i < found.parameters.size(); ++i) {
+    EXPECT_NEAR(found.elasticity(found.parameters[i], OrbitFigure::kInefficiencyRms),
+                alone.sensitivities->elasticity(alone.sensitivities->parameters[i],
+                                                OrbitFigure::kInefficiencyRms),
+                1e-2)
+        << found.parameters[i].parameter;
+  }
+}
+
 TEST(SweepSensitivities, AreAbsentWithTheirCauseWhereAPointHasNone) {
   SweepOptions options;
   options.point.sensitivities = true;

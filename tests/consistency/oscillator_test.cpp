@@ -262,7 +262,7 @@ TEST(March, PhaseAndProgressOfAGradedPieceAreEachOthersInverse) {
       EXPECT_EQ(piece.phase(1.5), 1.5);
       EXPECT_EQ(piece.phase(0.7), 1);
       for (const double phase : {1.0, 1.001, 1.1, 1.25, 1.4, 1.499, 1.5}) {
-        EXPECT_NEAR(piece.phase(piece.progress(phase)), phase, 4e-16);
+        EXPECT_NEAR(piece.phase(piece.s_of(phase)), phase, 4e-16);
       }
       for (const double at : {0.75, 1.1, 1.45}) {
         EXPECT_NEAR((piece.phase(at + 1e-6) - piece.phase(at - 1e-6)) / 2e-6, piece.slope(at),

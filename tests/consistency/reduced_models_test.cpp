@@ -42,7 +42,7 @@ struct Loss {
   double pinion_torque, rms, energy_mean;  // [N m], [%]
 };
 
-/// Phase by phase, contact by contact, by the reference kernel: two Gauss points in each interval
+/// Phase by phase, contact by contact, by the scalar kernel: two Gauss points in each interval
 /// of the tables, on whose ends the integrand has its kinks. T_w given.
 Loss plain_quasi_static(const Scene& scene, double kilometres_per_hour) {
   const MeshData mesh(scene.gear_set);

@@ -94,7 +94,7 @@ TEST(Rig, TractionOfALimitedFilmIsTheLimitOverTheMeanPressure) {
   Lubricant oil = shell_t9();
   oil.limiting_shear_stress_at_zero_pressure = 4e6;
   oil.limiting_shear_stress_coefficient = 0.029;
-  oil.vogel_viscosity_prefactor *= 1e4;  // so that even the rim sits on the limit
+  oil.vogel_viscosity_prefactor *= 1e4;  // so that even the edge sits on the limit
   RigScene scene = traction_machine(oil);
   scene.options.isothermal = true;
   const std::vector<std::pair<double, double>> expected{{38, 0.03609}, {154, 0.03344}};

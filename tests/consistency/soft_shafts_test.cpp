@@ -46,7 +46,7 @@ struct SeriesAt {
 };
 
 /// I_p phi_p'' = T_s - R_p F + T_fr,p and I_g phi_g'' = R_g F - T_w + T_fr,g in time, by formulas
-/// of the test's own; contacts by the reference kernel, one by one.
+/// of the test's own; contacts by the scalar kernel, one by one.
 class TwoRotors {
  public:
   enum { kPinionAngle, kPinionSpeed, kMeshApproach, kGearSpeed, kLoss, kLossSquared, kSize };

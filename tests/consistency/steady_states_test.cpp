@@ -31,15 +31,15 @@ bool has_warning(const PointResult& result, const std::string& code) {
                      [&](const RangeWarning& warning) { return warning.code == code; });
 }
 
-void expect_same(const CoexistingResponse& seen, const PointResult& own) {
+void expect_same(const CoexistingResponse& coexisting, const PointResult& own) {
   const double span =
       own.dynamic_transmission_error.maximum - own.dynamic_transmission_error.minimum;
-  EXPECT_NEAR(seen.inefficiency_rms / own.inefficiency_rms.value(), 1, 1e-6);
-  EXPECT_NEAR(seen.inefficiency_energy_mean / own.inefficiency_energy_mean.value(), 1, 1e-6);
-  EXPECT_NEAR(seen.pinion_torque / own.pinion_torque, 1, 1e-7);
-  EXPECT_NEAR(seen.dte_minimum, own.dynamic_transmission_error.minimum, 1e-5 * span);
-  EXPECT_NEAR(seen.dte_maximum, own.dynamic_transmission_error.maximum, 1e-5 * span);
-  EXPECT_EQ(seen.contact_loss, own.contact_loss);
+  EXPECT_NEAR(coexisting.inefficiency_rms / own.inefficiency_rms.value(), 1, 1e-6);
+  EXPECT_NEAR(coexisting.inefficiency_energy_mean / own.inefficiency_energy_mean.value(), 1, 1e-6);
+  EXPECT_NEAR(coexisting.pinion_torque / own.pinion_torque, 1, 1e-7);
+  EXPECT_NEAR(coexisting.dte_minimum, own.dynamic_transmission_error.minimum, 1e-5 * span);
+  EXPECT_NEAR(coexisting.dte_maximum, own.dynamic_transmission_error.maximum, 1e-5 * span);
+  EXPECT_EQ(coexisting.contact_loss, own.contact_loss);
 }
 
 TEST(SteadyStates, TwoResponsesCoexistAt67AndAHalfAndEachReportsTheOther) {

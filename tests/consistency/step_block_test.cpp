@@ -190,8 +190,8 @@ TEST_P(StepsSideBySide, GiveTheForcesMiddlesAndContactConditionsOfTheGearPairSys
     }
     for (const GridContacts* contacts :
          {&bench.grid.contacts(), &bench.grid.contacts_at_starts()}) {
-      Columns seen(kGatheredRows, contacts->node.size());
-      gather_contact_conditions(set, bench.block(), *contacts, filled, seen);
+      Columns conditions(kGatheredRows, contacts->node.size());
+      gather_contact_conditions(set, bench.block(), *contacts, filled, conditions);
       for (int place = 0, node = 0; node <= 2 * kSteps; ++place, node += contacts->stride) {
         const Columns& at = node % 2 == 0 ? filled.start : filled.middle;
         MarchState y{};
@@ -202,14 +202,14 @@ TEST_P(StepsSideBySide, GiveTheForcesMiddlesAndContactConditionsOfTheGearPairSys
           const double load = flank.load_share * bench.regime.load(at[kMeshForceRow][node / 2]);
           FlankMotion motion;
           const ContactConditions c = system.contact_conditions(flank, load, y.data(), motion);
-          EXPECT_NEAR(seen[kGatheredLoad][n], c.load, 1e-12 * (c.load + 1));
-          EXPECT_NEAR(seen[kGatheredPinionX][n], c.velocity_1_x, 1e-12);
-          EXPECT_NEAR(seen[kGatheredPinionY][n], c.velocity_1_y, 1e-12);
-          EXPECT_NEAR(seen[kGatheredGearX][n], c.velocity_2_x, 1e-12);
-          EXPECT_NEAR(seen[kGatheredGearY][n], c.velocity_2_y, 1e-12);
-          EXPECT_NEAR(seen[kGatheredSlidingSpeed][n], motion.sliding_speed, 1e-12);
-          EXPECT_NEAR(seen[kGatheredPinionArm][n], motion.pinion_friction_arm, 1e-12);
-          EXPECT_NEAR(seen[kGatheredGearArm][n], motion.gear_friction_arm, 1e-12);
+          EXPECT_NEAR(conditions[kGatheredLoad][n], c.load, 1e-12 * (c.load + 1));
+          EXPECT_NEAR(conditions[kGatheredPinionX][n], c.velocity_1_x, 1e-12);
+          EXPECT_NEAR(conditions[kGatheredPinionY][n], c.velocity_1_y, 1e-12);
+          EXPECT_NEAR(conditions[kGatheredGearX][n], c.velocity_2_x, 1e-12);
+          EXPECT_NEAR(conditions[kGatheredGearY][n], c.velocity_2_y, 1e-12);
+          EXPECT_NEAR(conditions[kGatheredSlidingSpeed][n], motion.sliding_speed, 1e-12);
+          EXPECT_NEAR(conditions[kGatheredPinionArm][n], motion.pinion_friction_arm, 1e-12);
+          EXPECT_NEAR(conditions[kGatheredGearArm][n], motion.gear_friction_arm, 1e-12);
           ++n;
         }
         EXPECT_EQ(n, contacts->first[place + 1]);
@@ -246,7 +246,7 @@ struct Given {
         composed(steps),
         filled(bench.response),
         particular(kStepUnknowns * (steps + 1)),
-        seen(kGatheredRows, bench.grid.contacts().node.size()) {
+        conditions(kGatheredRows, bench.grid.contacts().node.size()) {
     EXPECT_TRUE(rk4_steps(set, bench.block(), bench.response, end, &derivatives));
     compose_derivatives(set, derivatives, composed);
     EXPECT_TRUE(complete_midpoints(set, bench.block(), filled));
@@ -255,7 +255,7 @@ struct Given {
     constexpr double kSection[] = {1e-6, -2e-7, 3e-6, 0.1, -0.2, 0.05, 0.03, 0.5};
     constexpr double kPerScale[] = {1e5, 1e6, 1e5, 10, 10, 30, 30, 0};
     longest = expand_section_update(set, composed, kSection, kPerScale, particular.data());
-    gather_contact_conditions(set, bench.block(), bench.grid.contacts(), filled, seen);
+    gather_contact_conditions(set, bench.block(), bench.grid.contacts(), filled, conditions);
   }
 
   int steps;
@@ -264,7 +264,7 @@ struct Given {
   CycleResponse filled;
   std::vector<double> particular;
   double longest = 0;
-  Columns seen;
+  Columns conditions;
 };
 
 testing::AssertionResult same_bits(const double* a, const double* b, std::size_t count) {
@@ -303,8 +303,8 @@ TEST_P(StepsSideBySide, AreTheSameBitsInEveryWidthWithFusedMultiplyAdds) {
     EXPECT_TRUE(same_bits(narrow.filled.start, wide.filled.start, kResponseRows, count + 1));
     EXPECT_TRUE(same_bits(narrow.filled.middle, wide.filled.middle, kResponseRows, count));
     EXPECT_TRUE(same_bits(narrow.filled.rate, wide.filled.rate, kWheelSpeed + 1, count + 1));
-    EXPECT_TRUE(
-        same_bits(narrow.seen, wide.seen, kGatheredRows, bench.grid.contacts().node.size()));
+    EXPECT_TRUE(same_bits(narrow.conditions, wide.conditions, kGatheredRows,
+                          bench.grid.contacts().node.size()));
   }
 }
 
@@ -510,7 +510,7 @@ TEST(OrbitSolver, HandsOverTheContactsOfTheResponse) {
     ASSERT_TRUE(bench.solve(48, orbit));
     const SolvedPieces solved = solved_pieces(bench.system, bench.grids.with_steps(48),
                                               orbit.pieces, *orbit.contacts, bench.contacts);
-    ContactSolver by_reference(bench.contacts, bench.tally);
+    ContactSolver by_scalar_kernel(bench.contacts, bench.tally);
     const auto expect_close = [](double a, double b) {
       EXPECT_NEAR(a, b, 1e-8 * std::abs(b) + 1e-9);
     };
@@ -521,7 +521,7 @@ TEST(OrbitSolver, HandsOverTheContactsOfTheResponse) {
         const double phase = std::min(p.phase + 0.5 * part * p.length, 1.0);
         Instant expected;
         bench.system.evaluate(phase, bench.mesh.interval_at(phase), p.regime, states[part]->data(),
-                              by_reference, expected);
+                              by_scalar_kernel, expected);
         const Instant& at = solved.of(i)[part];
         expect_close(at.mesh_force, expected.mesh_force);
         expect_close(at.pinion_friction_torque, expected.pinion_friction_torque);

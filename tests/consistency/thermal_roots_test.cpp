@@ -63,13 +63,13 @@ class Excess {
 std::vector<double> scanned_roots(const ContactCase& c) {
   const Excess excess(c);
   std::vector<double> roots;
-  const double hottest = (end_of_density_law(c.lubricant) - excess.base()) * (1 - 1e-9);
-  if (!(hottest > 0)) return roots;
+  const double greatest_rise = (end_of_density_law(c.lubricant) - excess.base()) * (1 - 1e-9);
+  if (!(greatest_rise > 0)) return roots;
   constexpr int kScan = 700;
   double last = 0;
   bool above = true;  // at no rise the film is always heated
   for (int i = 0; i <= kScan; ++i) {
-    const double rise = hottest * std::pow(10, -10.0 * (kScan - i) / kScan);
+    const double rise = greatest_rise * std::pow(10, -10.0 * (kScan - i) / kScan);
     if ((excess.coarse(rise) > 0) != above) {
       double low = last, high = rise;
       for (int k = 0; k < 40; ++k) {

@@ -86,7 +86,7 @@ TEST(RigUncertainty, OfALimitedFilmIsThatOfItsLimit) {
   RigInputs inputs;
   const double slope = inputs.fluid.limiting_shear_stress_coefficient();
   inputs.fluid.set_vogel_viscosity_prefactor_pascal_seconds(
-      1e4 * inputs.fluid.vogel_viscosity_prefactor_pascal_seconds());  // even the rim is limited
+      1e4 * inputs.fluid.vogel_viscosity_prefactor_pascal_seconds());  // even the edge is limited
   set_uncertainty(inputs.fluid, "limiting_shear_stress_coefficient", 0.05 * slope);
   v1::EvaluateRigRequest request = banded_request(999);
   request.mutable_model_options()->set_isothermal(true);

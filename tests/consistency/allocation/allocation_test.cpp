@@ -93,7 +93,7 @@ TEST_P(Allocation, NoneInARefusedContact) {
 TEST(BatchAllocation, NoneInASolve) {
   const Scene scene = reference_scene();
   std::vector<ContactConditions> conditions = realistic_contacts(scene, 100, 30).conditions;
-  conditions[7].radius_x = -1;  // goes to the reference
+  conditions[7].radius_x = -1;  // goes to the scalar kernel
   conditions[9].load = 0;
   ContactArrays arrays(conditions, scene.solid, scene.options);
   for (const InstructionSet set : supported_instruction_sets()) {

@@ -17,10 +17,10 @@ namespace tribodyn {
 inline constexpr double kShareOfSteps = 0.75;
 
 /// A lubricant's losses may follow the mesh force more than those of Coulomb's friction do: what
-/// the steps do to its figures is at most so many times the error of a reference orbit. With 1 five
+/// the steps do to its figures is at most so many times the error of Coulomb's orbit. With 1 five
 /// of 248 screened scenes err more than estimated and three more than the tolerance; with 6 they
 /// take 1.8 % more contacts.
-inline constexpr double kReferenceCaution = 3;
+inline constexpr double kCoulombErrorFactor = 3;
 
 /// Finds the orbit from `origin` under Coulomb's friction in place of a lubricant's, to start every
 /// lubricant's search and to give the error of its steps: the orbits of all lubricants are near,
@@ -35,15 +35,15 @@ inline constexpr double kReferenceCaution = 3;
 /// Differential Equations I, 2nd ed., 1993, section II.4.) `estimated_error` is that of the steps;
 /// infinite if it is not known. Returns nothing if there is no such orbit. `least`: steps of the
 /// first grid.
-std::vector<PeriodicOrbit> reference_orbits(const PeriodicProblem& problem,
-                                            const ShootingOptions& options,
-                                            const PeriodicOrbit& origin, int least);
+std::vector<PeriodicOrbit> coulomb_orbits(const PeriodicProblem& problem,
+                                          const ShootingOptions& options,
+                                          const PeriodicOrbit& origin, int least);
 
-/// A bounded cache of reference orbits, keyed by gear set, load, speed and start alone: a hit is
+/// A bounded cache of coulomb_orbits(), keyed by gear set, load, speed and start alone: a hit is
 /// bit-identical to recomputation. Of one gear set and its options; one thread at a time.
-class ReferenceOrbits {
+class CoulombOrbits {
  public:
-  /// As reference_orbits(). Valid until the next call.
+  /// As coulomb_orbits(). Valid until the next call.
   const std::vector<PeriodicOrbit>& find(const PeriodicProblem& problem,
                                          const ShootingOptions& options,
                                          const PeriodicOrbit& origin, int least);

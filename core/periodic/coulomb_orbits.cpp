@@ -1,4 +1,4 @@
-#include "core/periodic/reference_orbits.h"
+#include "core/periodic/coulomb_orbits.h"
 
 #include <algorithm>
 #include <limits>
@@ -10,13 +10,14 @@
 namespace tribodyn {
 namespace {
 
-// Of the scenes that reference_orbits.h names: with 0.025 they take 0.8 % fewer contacts and with
+// Of the scenes that coulomb_orbits.h names: with 0.025 they take 0.8 % fewer contacts and with
 // 0.1 5.3 % more. Lubricated flanks are between 0.02 and 0.1.
 constexpr double kCoefficient = 0.05;
 // Found at 37.7 km/h (see below); those scenes do not need it.
 constexpr double kOtherCoefficient = 0.02;
-// Of the reference's gain, a lower bound of the lubricant's, which may be less. Not critical: with
-// 0.1 and 1 they take 0.3 % fewer and 0.8 % more contacts, and the estimates bound as well.
+// Of the gain under Coulomb's friction, a lower bound of the lubricant's, which may be less. Not
+// critical: with 0.1 and 1 they take 0.3 % fewer and 0.8 % more contacts, and the estimates bound
+// as well.
 constexpr double kShareOfGain = 0.6;
 
 /// The error of the steps on the first grid by the response under another friction. It changes
@@ -36,13 +37,13 @@ double error_by_other_friction(OrbitSolver& solver, MeshGrids& grids,
 
 }  // namespace
 
-std::vector<PeriodicOrbit> reference_orbits(const PeriodicProblem& problem,
-                                            const ShootingOptions& options,
-                                            const PeriodicOrbit& origin, int least) {
-  // With 3 grids the scenes that reference_orbits.h names take 1.1 % more contacts, with 8 the
+std::vector<PeriodicOrbit> coulomb_orbits(const PeriodicProblem& problem,
+                                          const ShootingOptions& options,
+                                          const PeriodicOrbit& origin, int least) {
+  // With 3 grids the scenes that coulomb_orbits.h names take 1.1 % more contacts, with 8 the
   // same.
   constexpr std::size_t kMostGrids = 5;
-  constexpr double kSmallStepError = kShareOfSteps * kLooseTolerance / kReferenceCaution;
+  constexpr double kSmallStepError = kShareOfSteps * kLooseTolerance / kCoulombErrorFactor;
   // Not critical: with 1e-4 and 1e-6 they take 0.1 % fewer and 0.2 % more.
   constexpr double kPicardTolerance = 1e-5;
   SolverWork work;
@@ -63,11 +64,11 @@ std::vector<PeriodicOrbit> reference_orbits(const PeriodicProblem& problem,
     const double error =
         out.empty() ? 0 : comparison.error(steps, orbit.figures) + orbit.picard_error;
     comparison.add(steps, orbit.figures, error);
-    PeriodicOrbit& reference = out.emplace_back(orbit);
-    reference.estimated_error = error;
+    PeriodicOrbit& added = out.emplace_back(orbit);
+    added.estimated_error = error;
     // A lubricant's friction is yet to come.
-    reference.friction_gain_floor = kShareOfGain * std::exchange(reference.friction_gain, 0);
-    reference.contacts.reset();
+    added.friction_gain_floor = kShareOfGain * std::exchange(added.friction_gain, 0);
+    added.contacts.reset();
     const bool parts =
         options.bilateral_contact && orbit.least_pressing_force < -kTensionForSeparation;
     if (parts || (out.size() > 1 && error < kSmallStepError)) break;
@@ -96,9 +97,9 @@ std::vector<PeriodicOrbit> reference_orbits(const PeriodicProblem& problem,
   return out;
 }
 
-const std::vector<PeriodicOrbit>& ReferenceOrbits::find(const PeriodicProblem& problem,
-                                                        const ShootingOptions& options,
-                                                        const PeriodicOrbit& origin, int least) {
+const std::vector<PeriodicOrbit>& CoulombOrbits::find(const PeriodicProblem& problem,
+                                                      const ShootingOptions& options,
+                                                      const PeriodicOrbit& origin, int least) {
   Key key{static_cast<double>(least),
           static_cast<double>(options.bilateral_contact),
           static_cast<double>(options.first_cycles),
@@ -113,7 +114,7 @@ const std::vector<PeriodicOrbit>& ReferenceOrbits::find(const PeriodicProblem& p
     found_.clear();
     steps_kept_ = 0;
   }
-  auto made = reference_orbits(problem, options, origin, least);
+  auto made = coulomb_orbits(problem, options, origin, least);
   for (const PeriodicOrbit& each : made) steps_kept_ += each.steps_per_mesh_cycle;
   return found_.emplace(key, std::move(made)).first->second;
 }
