@@ -23,7 +23,7 @@ using Tables = ContactBlockTables;
 /// on several contacts at a time, and all that a stage needs stays in registers.
 struct alignas(64) Work {
   using Lanes = ContactLanes;
-  Lanes in_range;  // 1 or 0: load, speeds and film ratio within those of the vector code
+  Lanes in_range;  // 1 or 0: conditions, film and load sharing are such as the vector code solves
   Lanes slide2, log_along, log_across, log_speed2, log_load;
   Lanes film_under_all, load_root;  // h_cen if the film carried all, W^(1/3)
   // Load sharing: r = ln(W_EHL/W), e^(r/3), h_cen/h_cen(r = 0), and the asperities there.

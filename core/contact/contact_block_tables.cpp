@@ -90,8 +90,8 @@ BivariatePolynomial truncated(const RatioSquare& coefficients, double tolerance)
   return out;
 }
 
-/// The depth ln(1 + c p) of 3 GPa, or of a viscosity 32 e-folds above that at p = 0 and a fold
-/// below the greatest one, at the temperature of the greatest L.
+/// The depth ln(1 + c p) of 3 GPa, or of a viscosity 32 e-folds above that at p = 0 and one
+/// e-fold below the greatest one, at the temperature of the greatest L.
 double maximum_log_pressure_of(const ShearLaw<double>& law, double greatest_factor) {
   constexpr double kGreatestLogPressure = 2.79, kMostLogGrowth = 32;
   if (law.lubricant.pressure_viscosity_law == PressureViscosityLaw::kRoelands) {

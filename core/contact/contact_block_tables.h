@@ -45,7 +45,7 @@ struct ContactBlockTables : ContactConstants<double> {
   BoundaryFriction boundary{};   ///< 0: no F_b
   bool no_boundary_friction = false;
 
-  /// False: no contact is certified, so that the scalar kernel solves all.
+  /// False: the scalar kernel solves all contacts.
   bool can_certify = false;
   bool inlet_shear_heating = false;
   bool isothermal = false, limited = false;

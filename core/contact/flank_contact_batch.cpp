@@ -216,26 +216,26 @@ namespace {
 /// A figure in the caller's arrays, in the scalar kernel's solution and in a block.
 struct Figure {
   double* FlankContactBatchResults::*to;
-  double ContactSolution::*of_reference;
+  double ContactSolution::*of_scalar_kernel;
   ContactLanes ContactBlockResults::*of_block;
 };
 using To = FlankContactBatchResults;
-using Alone = ContactSolution;
+using Solution = ContactSolution;
 using Block = ContactBlockResults;
 constexpr Figure kFigures[] = {
-    {&To::friction, &Alone::friction, &Block::friction},
-    {&To::viscous_friction, &Alone::viscous_friction, &Block::viscous_friction},
-    {&To::boundary_friction, &Alone::boundary_friction, &Block::boundary_friction},
-    {&To::contact_temperature, &Alone::contact_temperature, &Block::contact_temperature},
-    {&To::central_film_thickness, &Alone::central_film_thickness, &Block::film_thickness},
-    {&To::film_ratio, &Alone::film_ratio, &Block::film_ratio},
-    {&To::maximum_pressure, &Alone::maximum_pressure, &Block::maximum_pressure},
-    {&To::film_load, &Alone::film_load, &Block::film_load},
-    {&To::asperity_load, &Alone::asperity_load, &Block::asperity_load},
-    {&To::sliding_speed, &Alone::sliding_speed, &Block::sliding_speed},
-    {&To::shear_rate, &Alone::shear_rate, &Block::shear_rate},
-    {&To::mean_shear_stress, &Alone::mean_shear_stress, &Block::mean_shear_stress},
-    {&To::limiting_stress_area_share, &Alone::limiting_stress_area_share,
+    {&To::friction, &Solution::friction, &Block::friction},
+    {&To::viscous_friction, &Solution::viscous_friction, &Block::viscous_friction},
+    {&To::boundary_friction, &Solution::boundary_friction, &Block::boundary_friction},
+    {&To::contact_temperature, &Solution::contact_temperature, &Block::contact_temperature},
+    {&To::central_film_thickness, &Solution::central_film_thickness, &Block::film_thickness},
+    {&To::film_ratio, &Solution::film_ratio, &Block::film_ratio},
+    {&To::maximum_pressure, &Solution::maximum_pressure, &Block::maximum_pressure},
+    {&To::film_load, &Solution::film_load, &Block::film_load},
+    {&To::asperity_load, &Solution::asperity_load, &Block::asperity_load},
+    {&To::sliding_speed, &Solution::sliding_speed, &Block::sliding_speed},
+    {&To::shear_rate, &Solution::shear_rate, &Block::shear_rate},
+    {&To::mean_shear_stress, &Solution::mean_shear_stress, &Block::mean_shear_stress},
+    {&To::limiting_stress_area_share, &Solution::limiting_stress_area_share,
      &Block::limited_area_share},
 };
 
@@ -244,7 +244,7 @@ void put(const ContactSolution& s, std::size_t i, const FlankContactBatchResults
   const auto set = [i](auto* array, auto value) {
     if (array != nullptr) array[i] = value;
   };
-  for (const Figure& each : kFigures) set(to.*each.to, s.*each.of_reference);
+  for (const Figure& each : kFigures) set(to.*each.to, s.*each.of_scalar_kernel);
   set(to.limiting_stress_at_centre, s.limiting_stress_at_centre);
   set(to.by_scalar_kernel, true);
   set(to.status, s.status);

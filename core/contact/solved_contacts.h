@@ -25,9 +25,8 @@ class SolvedContacts {
   /// Sets the figures that are kept; those that FlankContactModel::complete() fills in are left.
   void copy(std::size_t i, ContactFigures& to) const;
   double film_load(std::size_t i) const;  ///< W_EHL [N]
-  bool by_scalar_kernel(std::size_t i) const {
-    return by_scalar_kernel_[i];
-  }  ///< not by the vector code
+  /// Returns true if FlankContactModel solved the contact, and not the vector code.
+  bool by_scalar_kernel(std::size_t i) const { return by_scalar_kernel_[i]; }
 
  private:
   Columns rows_;

@@ -34,9 +34,9 @@ struct GapEvent {
 
 void throw_if_refused(ContactStatus status);
 
-/// The gear pair as a System of DormandPrinceWithEvents, over a variable s from 0 to 1 in
-/// a mesh cycle: mesh phase, but stretched where a flank pair takes or gives up its load
-/// (GradedPhase). kRecord adds the integrals of RecordComponent.
+/// The gear pair as a System of DormandPrinceWithEvents, over a variable s from 0 to 1 in a mesh
+/// cycle: mesh phase, but stretched where a flank pair takes or gives up its load (GradedPhase).
+/// kRecord adds the integrals of RecordComponent.
 template <bool kRecord>
 class MeshCycleSystem {
  public:

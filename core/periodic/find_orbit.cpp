@@ -70,8 +70,8 @@ bool is_half_as_long(const PeriodicProblem& problem, const PeriodicOrbit& orbit)
   return difference < 1e-3;
 }
 
-/// The search for one orbit: on one grid after another, or on the grid whose error the
-/// orbits under Coulomb's friction give.
+/// The search for one orbit: on one grid after another, or on the grid whose error the orbits under
+/// Coulomb's friction give.
 class GridRefinement {
  public:
   /// `cycles_left`: mesh cycles that may be integrated; reduced also where an orbit is known

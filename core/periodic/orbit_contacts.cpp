@@ -36,7 +36,7 @@ bool OrbitContacts::differentiate() {
   int next = 0;
   for (std::size_t i = 0; i < orbit_.pieces.size(); ++i) {
     for (int part = next - first_[i]; part < 3; ++part, ++next) {
-      if (!see(orbit_.pieces[i], part, instants_[next])) return false;
+      if (!add_contacts_at(orbit_.pieces[i], part, instants_[next])) return false;
     }
   }
   batch_.differentiate(vectors_);
@@ -65,7 +65,7 @@ std::size_t OrbitContacts::most_contacts() const {
 }
 
 /// The contacts of one instant. False where one has no derivatives.
-bool OrbitContacts::see(const OrbitPiece& piece, int part, ContactsAt& out) {
+bool OrbitContacts::add_contacts_at(const OrbitPiece& piece, int part, ContactsAt& out) {
   const MarchState& y = state_of(piece, part);
   Mechanics at;
   if (piece.node >= 0) {

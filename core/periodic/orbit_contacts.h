@@ -62,11 +62,11 @@ class OrbitContacts {
     double sliding_speed, arm[2];
     double sliding_speed_slopes[2], arm_slopes[2][2];
     double friction, film_ratio, temperature;
-    int lane;  // in vectors_; or -1 - the place in references_
+    int lane;  // in vectors_; or -1 - the place in of_scalar_kernel_
   };
 
   std::size_t most_contacts() const;
-  bool see(const OrbitPiece& piece, int part, ContactsAt& out);
+  bool add_contacts_at(const OrbitPiece& piece, int part, ContactsAt& out);
   void add_up(ContactsAt& at) const;
   /// d (an output)/d (mesh force, speeds).
   template <class ByCondition>

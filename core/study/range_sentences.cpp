@@ -29,16 +29,16 @@ std::string limiting_stress_origin(FluidGrounds::LimitingStress limiting_stress)
 }  // namespace
 
 std::string viscosity_sentence(const FluidGrounds& grounds, double inlet_temperature,
-                               double hottest_temperature) {
+                               double highest_temperature) {
   if (!grounds.viscosity_measured) return {};
   const double inlet = inlet_temperature - kZeroCelsius;
-  const double hottest = hottest_temperature - kZeroCelsius;
+  const double highest_film = highest_temperature - kZeroCelsius;
   const double lowest = grounds.viscosity_measured->lowest - kZeroCelsius;
   const double highest = grounds.viscosity_measured->highest - kZeroCelsius;
   // Kelvin and back leaves an error in the 14th digit.
   constexpr double kRounding = 1e-9;
-  if (inlet >= lowest - kRounding && hottest <= highest + kRounding) return {};
-  return "the film is at " + range_text(inlet, hottest, "C") +
+  if (inlet >= lowest - kRounding && highest_film <= highest + kRounding) return {};
+  return "the film is at " + range_text(inlet, highest_film, "C") +
          "; the viscosity of this lubricant was measured from " + range_text(lowest, highest, "C") +
          " and is extrapolated beyond";
 }

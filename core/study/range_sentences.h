@@ -16,7 +16,7 @@ inline constexpr int kRangeDigits = 3;
 
 /// Of the film's temperatures [K]; empty also if the range of the measurements is not known.
 std::string viscosity_sentence(const FluidGrounds& grounds, double inlet_temperature,
-                               double hottest_temperature);
+                               double highest_temperature);
 /// Of the largest contact pressure [Pa].
 std::string pressure_sentence(double pressure);
 /// Of the least film ratio [-].

@@ -30,8 +30,9 @@ std::vector<RangeWarning> range_warnings(const Scene& scene, const PointResult& 
     if (!sentence.empty()) out.push_back({code, sentence});
   };
   const double inlet = scene.sump_temperature + scene.inlet_temperature_rise;
-  const double hottest = std::max(inlet, r.contact_temperature.maximum);
-  warn("VISCOSITY_TEMPERATURE", viscosity_sentence(scene.fluid_grounds, inlet, hottest));
+  const double highest_temperature = std::max(inlet, r.contact_temperature.maximum);
+  warn("VISCOSITY_TEMPERATURE",
+       viscosity_sentence(scene.fluid_grounds, inlet, highest_temperature));
   if (r.maximum_pressure.maximum > 0) {
     warn("PRESSURE", pressure_sentence(r.maximum_pressure.maximum));
   }

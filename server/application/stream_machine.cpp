@@ -41,12 +41,13 @@ void StreamMachine::close(const google::rpc::Status& status) {
 
 void StreamMachine::shut_down(const google::rpc::Status& status) {
   std::unique_lock lock(mutex_);
-  const bool may_say_more = is_open_ && source_->follows_changes();
-  if (!may_say_more) {
+  const bool follows_changes = is_open_ && source_->follows_changes();
+  if (!follows_changes) {
     lock.unlock();
     return close(status);
   }
   closing_when_idle_ = status;
+  closing_at_last_ = Clock::now() + kLastChanges;
   again_ = true;
   if (!is_idle()) return;
   is_stepping_ = true;
@@ -127,6 +128,9 @@ void StreamMachine::finish(std::unique_lock<std::mutex> lock, google::rpc::Statu
 bool StreamMachine::begin_step(Reply& prepared) {
   std::unique_lock lock(mutex_);
   again_ = false;
+  if (closing_when_idle_ && !closing_ && Clock::now() >= closing_at_last_) {
+    closing_ = closing_when_idle_;
+  }
   if (has_closed(lock)) return false;
   prepared = std::move(prepared_);
   return true;

@@ -36,9 +36,9 @@ class StreamTransport {
 /// The states of one server stream, for every transport: pulls the messages of a source and writes
 /// one at a time. While a message is written, the next one is prepared if the source allows it, and
 /// no more than these two wait for a slow client. Pulls again when the source reports a change.
-/// Closes the stream at its end, at a shutdown, or when the transport requests it, as soon as no
-/// write is under way; cuts off a client that reads nothing. Safe for concurrent access: the thread
-/// that takes a step owns the source until the end of the step.
+/// Closes the stream at its end, or when the transport requests it, as soon as no write is under
+/// way, and at a shutdown as shut_down() says; cuts off a client that reads nothing. Safe for
+/// concurrent access: the thread that takes a step owns the source until the end of the step.
 class StreamMachine : public Observer {
  public:
   using Clock = std::chrono::steady_clock;
@@ -58,9 +58,12 @@ class StreamMachine : public Observer {
   void changed() override;
   /// Ends the stream once no write is under way. The first of several statuses counts.
   void close(const google::rpc::Status& status);
-  /// Ends a stream that follows changes as soon as its source has nothing to say, and any other
-  /// once no write is under way. The transport limits the time that this takes.
+  /// Ends a stream that follows changes as soon as its source has nothing to say, or by the first
+  /// step after kLastChanges, and any other stream once no write is under way.
   void shut_down(const google::rpc::Status& status);
+  /// Less than the second after which transports cut off at a shutdown, so that a watch that has
+  /// many events to send still ends with its status.
+  static constexpr auto kLastChanges = std::chrono::milliseconds(500);
   /// A write has ended; `ok` is false if the client is gone.
   void written(bool ok);
   /// Takes a step: writes the prepared message, or pulls one and writes or keeps it, or ends. Only
@@ -93,17 +96,19 @@ class StreamMachine : public Observer {
   StreamTransport& transport_;
   const google::protobuf::Message& prototype_;
   const Clock::duration unread_;
-  ReplySource source_;  // set by open(); then used by the thread that takes a step
+  // Set by open(); then used by the thread that takes a step, but for what is constant.
+  ReplySource source_;
   std::mutex mutex_;
   // All below are guarded by mutex_.
   bool is_open_ = false;
   bool is_stepping_ = false;  // a step runs or will run
   bool is_writing_ = false;   // a write is under way
   bool is_finished_ = false;
-  bool again_ = false;  // changed since the last step began
+  bool again_ = false;  // changed, or shut down, since the last step began
   Reply prepared_;      // while a write is under way: the next message
   std::optional<google::rpc::Status> closing_;
-  std::optional<google::rpc::Status> closing_when_idle_;
+  std::optional<google::rpc::Status> closing_when_idle_;  // once the source has nothing to say
+  Clock::time_point closing_at_last_;                     // whatever it still has to say
   Clock::time_point end_;
   Clock::time_point writing_since_;  // of the write under way
 };

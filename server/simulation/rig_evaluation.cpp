@@ -163,10 +163,11 @@ class RigWarnings {
       : scene_(evaluation.scene), grounds_(fluid_grounds(*evaluation.lubricant)), out_(out) {}
 
   void add(int row, double inlet_temperature, const RigPoint& point) {
-    const double hottest = std::max(inlet_temperature, point.contact_temperature);
+    const double highest_temperature = std::max(inlet_temperature, point.contact_temperature);
     if (const auto& measured = grounds_.viscosity_measured) {
-      add(row, "VISCOSITY_TEMPERATURE", viscosity_sentence(grounds_, inlet_temperature, hottest),
-          std::max(measured->lowest - inlet_temperature, hottest - measured->highest));
+      add(row, "VISCOSITY_TEMPERATURE",
+          viscosity_sentence(grounds_, inlet_temperature, highest_temperature),
+          std::max(measured->lowest - inlet_temperature, highest_temperature - measured->highest));
     }
     add(row, "PRESSURE", pressure_sentence(point.maximum_pressure),
         std::max(kLowestComparedPressure / point.maximum_pressure,

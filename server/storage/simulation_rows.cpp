@@ -340,8 +340,8 @@ AddOutcome insert_simulation(Connection& db, const NewSimulation& simulation, Mi
 }
 
 std::optional<StoredEvent> change_state(Connection& db, const StateChange& change) {
-  // The result and what else the end of a simulation sets is not named before: SQLite writes the
-  // entries of an index anew for each column that an update names, even if the value stays.
+  // Only an update that ends a simulation names the result and the other columns of an end: SQLite
+  // rewrites the entry of every index of which an update names a column, even if its value stays.
   static const auto update_that_sets = [](const std::string& more) {
     return "UPDATE simulations SET state = ?2, sequence = sequence + 1, "
            "attempt = attempt + (?2 = 1), lost_attempts = lost_attempts + ?9, "

@@ -104,7 +104,7 @@ double seconds_of_contact_figures(const std::vector<Scene>& scenes) {
     for (double speed = kFirstSpeed; speed <= kLastSpeed; speed += kSpeedStep) {
       OperatingCondition condition;
       condition.vehicle_speed = speed / 3.6;
-      screen_point(prepared, condition, {});  // the reference orbit is there, and in the caches
+      screen_point(prepared, condition, {});  // Coulomb's orbit is there, and in the caches
       for (const bool turn : {false, true}) {
         PointOptions options;
         options.contact_summary = turn != (i % 2 == 0);

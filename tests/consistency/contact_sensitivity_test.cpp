@@ -220,7 +220,7 @@ TEST(ContactSensitivity, HasContinuousDerivativesWhereTheStressBeginsToBeLimited
   }
 }
 
-TEST(ContactSensitivity, OfABatchsSolutionIsThatOfTheReference) {
+TEST(ContactSensitivity, OfABatchsSolutionIsThatOfTheScalarKernel) {
   const ContactCase c;
   const FlankContactModel model = c.model();
   const FlankContactBatch batch(model);
@@ -240,7 +240,7 @@ TEST(ContactSensitivity, OfABatchsSolutionIsThatOfTheReference) {
 
 /// Elasticities of friction, contact temperature and film ratio by the vector code, through the
 /// levels, against those of dual numbers one by one. Returns the largest difference; -1 where the
-/// reference solves the contact.
+/// scalar kernel solves the contact.
 double difference_side_by_side(const ContactCase& c, InstructionSet set) {
   const FlankContactModel model = c.model();
   const FlankContactBatch batch(model, set);

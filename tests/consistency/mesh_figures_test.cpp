@@ -47,7 +47,7 @@ TEST(SpecificSliding, IsZeroInPureRollingAndInfiniteForASurfaceAtRest) {
   EXPECT_EQ(of_rollers(0, 1).surface_2, 1);
 }
 
-TEST(ContactFigures, ThatFollowFromOthersAreThoseOfTheReference) {
+TEST(ContactFigures, ThatFollowFromOthersAreThoseOfTheScalarKernel) {
   Draw draw(5);
   for (int n = 0; n < 200; ++n) {
     SCOPED_TRACE(n);

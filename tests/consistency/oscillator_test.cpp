@@ -211,14 +211,14 @@ TEST(March, EventsAtCornersOfFractionalPowersKeepTheErrorInProportionToTheTolera
   }
 }
 
-/// y' = 1 over phase, marched over the graded progress; also f = distance^0.74 from each corner.
+/// y' = 1 over phase, marched over the graded variable s; also f = distance^0.74 from each corner.
 struct Graded {
   static constexpr int kSize = 2, kEvents = 1;
   using State = std::array<double, kSize>;
   GradedPhase piece;
   bool at_start, at_end;
-  void derivative(double progress, const State&, State& dy) const {
-    const double phase = piece.phase(progress), slope = piece.slope(progress);
+  void derivative(double s, const State&, State& dy) const {
+    const double phase = piece.phase(s), slope = piece.slope(s);
     double power = 1;
     if (at_start) power *= std::pow(phase - 1, 0.74);
     if (at_end) power *= std::pow(1.5 - phase, 0.74);
@@ -244,9 +244,9 @@ TEST(March, GradedPiecesKeepTheFifthOrderOfEvenStepsAtCornersInKnownPlaces) {
       const GradedPhase piece(0.7, 1, 1.5, graded && c.at_start, graded && c.at_end);
       Graded system{piece, c.at_start, c.at_end};
       DormandPrinceWithEvents<Graded> march(system, steps_of(1e300, 0.8 / steps * (1 + 1e-12)));
-      double progress = 0.7;
+      double s = 0.7;
       Graded::State y{0, 0};
-      march.run(progress, y, 1.5);
+      march.run(s, y, 1.5);
       EXPECT_NEAR(y[0], 0.5, 1e-4);
       return std::abs(y[1] - c.exact);
     };

@@ -398,6 +398,22 @@ TEST(StreamMachine, AShutdownEndsAStreamOfChangesAfterTheLastOne) {
   }
 }
 
+TEST(StreamMachine, AShutdownEndsAStreamThatAlwaysHasMoreToSay) {
+  Manual stream;
+  stream.source->reports_changes = true;
+  const auto begin = Clock::now();
+  stream.machine.shut_down(status_of(google::rpc::UNAVAILABLE));
+  while (!stream.transport.end() && Clock::now() < begin + 4 * StreamMachine::kLastChanges) {
+    ++stream.source->available;
+    stream.run_step();
+    stream.end_write();
+    std::this_thread::sleep_for(milliseconds(1));
+  }
+  EXPECT_EQ(stream.code(), google::rpc::UNAVAILABLE);
+  EXPECT_GE(Clock::now() - begin, StreamMachine::kLastChanges);
+  EXPECT_GT(stream.transport.begun(), 1);
+}
+
 TEST(StreamMachine, AShutdownEndsOtherStreamsBeforeTheirNextMessage) {
   Manual stream;
   stream.source->available = 2;

@@ -59,6 +59,15 @@ TEST(BranchEnd, AFoldIsLocatedInADescendingSweepToo) {
   EXPECT_LE(end->followed_to - end->gone_at, 1.001 * kResolution);
 }
 
+TEST(BranchEnd, AFoldIsLocatedByMarchingAlone) {
+  Hysteresis model{6.2};
+  const auto end = find_branch_end(Hysteresis::wide(5), Hysteresis::narrow(8), {{}, model.solve()});
+  ASSERT_TRUE(end);
+  EXPECT_LE(end->followed_to, model.fold);
+  EXPECT_GT(end->gone_at, model.fold);
+  EXPECT_LE(end->gone_at - end->followed_to, 1.001 * kResolution);
+}
+
 TEST(BranchEnd, ASteepBranchHasNoEnd) {
   const auto steep = [](double speed) { return response(speed, 2 + std::tanh(4 * (speed - 6.5))); };
   const SolveOnBranch solve = [&](double speed, const BranchPoint&) { return steep(speed); };
