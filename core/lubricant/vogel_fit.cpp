@@ -179,8 +179,8 @@ VogelFit finish(const Table& table, double reference_temperature, const Prior* p
   fit.reduced_chi_square = fit.degrees_of_freedom > 0 ? law.squares / fit.degrees_of_freedom : 0;
   fit.reference_temperature_assumed = prior != nullptr;
 
-  // Standard deviations by which the Jacobian is scaled: what is stated, widened by what is
-  // observed; or what is observed alone.
+  // The standard deviations that scale the Jacobian: the stated ones, multiplied by the observed
+  // scatter if it exceeds 1; without stated ones the observed scatter alone.
   double widening = 1;
   if (fit.degrees_of_freedom > 0) {
     const double observed = std::sqrt(fit.reduced_chi_square);

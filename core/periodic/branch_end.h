@@ -7,7 +7,8 @@
 
 namespace tribodyn {
 
-/// A response on a branch: what tells branches apart, and what a neighbour starts from.
+/// A response on a branch: the figures by which branches differ, and the state from which the
+/// search for a neighbour starts.
 struct BranchPoint {
   double speed = 0;         ///< of the vehicle [m/s]: the branch is continued over it
   double swing = 0;         ///< of the transmission error: greatest less least [m]
@@ -35,11 +36,12 @@ struct BranchSolver {
   SolveOnBranch by_any_method;
 };
 
-/// Loosest relative tolerance of the solutions that locate an end; and the mesh cycles that one of
-/// them may march: more than the periods that shooting integrates in doubt (find_orbit.cpp, 300 of
-/// one mesh cycle). With 150 the sweeps of core/README.md down across 65 km/h take twenty times as
-/// long.
+/// Tightest relative tolerance of the solutions that locate an end: a hundredth of the distance of
+/// swings at which branches differ.
 inline constexpr double kBranchTolerance = 1e-3;
+/// Largest number of mesh cycles that one of these solutions may march: more than the periods that
+/// shooting integrates in doubt (find_orbit.cpp, 300 of one mesh cycle). With 150 the sweeps of
+/// core/README.md down across 65 km/h take twenty times as long.
 inline constexpr int kMostBranchCycles = 400;
 
 /// Whether two neighbours of a sweep may be on different branches: flanks part at one of them only,

@@ -58,8 +58,8 @@ class StreamMachine : public Observer {
   void changed() override;
   /// Ends the stream once no write is under way. The first of several statuses counts.
   void close(const google::rpc::Status& status);
-  /// Ends a stream that follows changes as soon as its source has nothing to say, or by the first
-  /// step after kLastChanges, and any other stream once no write is under way.
+  /// Ends a stream that follows changes as soon as its source has no message, or by the first step
+  /// after kLastChanges, and any other stream once no write is under way.
   void shut_down(const google::rpc::Status& status);
   /// Less than the second after which transports cut off at a shutdown, so that a watch that has
   /// many events to send still ends with its status.
@@ -96,7 +96,7 @@ class StreamMachine : public Observer {
   StreamTransport& transport_;
   const google::protobuf::Message& prototype_;
   const Clock::duration unread_;
-  // Set by open(); then used by the thread that takes a step, but for what is constant.
+  // Set by open(). Later only the thread that takes a step pulls from the source.
   ReplySource source_;
   std::mutex mutex_;
   // All below are guarded by mutex_.
@@ -107,8 +107,8 @@ class StreamMachine : public Observer {
   bool again_ = false;  // changed, or shut down, since the last step began
   Reply prepared_;      // while a write is under way: the next message
   std::optional<google::rpc::Status> closing_;
-  std::optional<google::rpc::Status> closing_when_idle_;  // once the source has nothing to say
-  Clock::time_point closing_at_last_;                     // whatever it still has to say
+  std::optional<google::rpc::Status> closing_when_idle_;  // once the source has no message
+  Clock::time_point closing_at_last_;                     // even if the source has messages
   Clock::time_point end_;
   Clock::time_point writing_since_;  // of the write under way
 };

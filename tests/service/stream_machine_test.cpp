@@ -398,7 +398,7 @@ TEST(StreamMachine, AShutdownEndsAStreamOfChangesAfterTheLastOne) {
   }
 }
 
-TEST(StreamMachine, AShutdownEndsAStreamThatAlwaysHasMoreToSay) {
+TEST(StreamMachine, AShutdownEndsAStreamWhoseMessagesNeverEnd) {
   Manual stream;
   stream.source->reports_changes = true;
   const auto begin = Clock::now();

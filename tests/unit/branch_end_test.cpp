@@ -90,8 +90,8 @@ TEST(BranchEnd, MarchingDecidesWhereShootingFindsNothing) {
 }
 
 TEST(BranchEnd, TheOtherBranchDecidesWhereThePeriodChanges) {
-  // Twice the period from 6.4 m/s on; shooting finds no response of one cycle beyond, and marching
-  // would be asked last.
+  // Twice the period from 6.4 m/s on; shooting finds no response of one cycle beyond. Marching is
+  // the last resort.
   int marched = 0;
   const SolveOnBranch shooting = [](double speed, const BranchPoint& from) {
     if (from.state.period == 1 && speed > 6.4) return std::optional<BranchPoint>();
