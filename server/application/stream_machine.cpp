@@ -35,8 +35,9 @@ void StreamMachine::changed() {
 
 void StreamMachine::close(const google::rpc::Status& status) {
   std::unique_lock lock(mutex_);
-  if (!closing_) closing_ = status;
-  if (is_idle()) finish(std::move(lock), status);
+  if (closing_ != Closing::kNow) status_ = status;
+  closing_ = Closing::kNow;
+  if (is_idle()) finish(std::move(lock), status_);
 }
 
 void StreamMachine::shut_down(const google::rpc::Status& status) {
@@ -46,7 +47,9 @@ void StreamMachine::shut_down(const google::rpc::Status& status) {
     lock.unlock();
     return close(status);
   }
-  closing_when_idle_ = status;
+  if (closing_ != Closing::kNo) return;
+  closing_ = Closing::kWhenIdle;
+  status_ = status;
   closing_at_last_ = Clock::now() + kLastChanges;
   again_ = true;
   if (!is_idle()) return;
@@ -59,11 +62,12 @@ void StreamMachine::written(bool ok) {
   std::unique_lock lock(mutex_);
   is_writing_ = false;
   if (!ok) {
-    closing_ = error(google::rpc::CANCELLED, v1::ERROR_REASON_CANCELLED, "the client is gone");
+    closing_ = Closing::kNow;
+    status_ = error(google::rpc::CANCELLED, v1::ERROR_REASON_CANCELLED, "the client is gone");
   }
   if (is_stepping_) return;  // that step reads what has changed
-  if (!ok) return finish(std::move(lock), *closing_);
-  const bool must_end = closing_ || closing_when_idle_;
+  if (!ok) return finish(std::move(lock), status_);
+  const bool must_end = closing_ != Closing::kNo;
   if (!again_ && !must_end && !prepared_ && !source_->may_continue()) return;
   is_stepping_ = true;
   const bool is_short = prepared_ || source_->is_short();
@@ -117,7 +121,7 @@ bool StreamMachine::is_idle() const {
   return is_open_ && !is_stepping_ && !is_writing_ && !is_finished_;
 }
 
-// The status is a copy: during transport_.finish() this object may be destroyed, with closing_.
+// The status is a copy: during transport_.finish() this object may be destroyed, with status_.
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
 void StreamMachine::finish(std::unique_lock<std::mutex> lock, google::rpc::Status status) {
   is_finished_ = true;
@@ -128,9 +132,7 @@ void StreamMachine::finish(std::unique_lock<std::mutex> lock, google::rpc::Statu
 bool StreamMachine::begin_step(Reply& prepared) {
   std::unique_lock lock(mutex_);
   again_ = false;
-  if (closing_when_idle_ && !closing_ && Clock::now() >= closing_at_last_) {
-    closing_ = closing_when_idle_;
-  }
+  if (closing_ == Closing::kWhenIdle && Clock::now() >= closing_at_last_) closing_ = Closing::kNow;
   if (has_closed(lock)) return false;
   prepared = std::move(prepared_);
   return true;
@@ -151,17 +153,17 @@ bool StreamMachine::begin_write(Reply& message, bool is_ahead) {
 }
 
 bool StreamMachine::has_closed(std::unique_lock<std::mutex>& lock) {
-  if (!closing_) return false;
+  if (closing_ != Closing::kNow) return false;
   is_stepping_ = false;
-  if (!is_writing_) finish(std::move(lock), *closing_);
+  if (!is_writing_) finish(std::move(lock), status_);
   return true;
 }
 
 bool StreamMachine::go_idle() {
   const std::lock_guard lock(mutex_);
   if (again_) return false;
-  if (closing_when_idle_ && !closing_) closing_ = closing_when_idle_;
-  if (closing_) return false;
+  if (closing_ == Closing::kWhenIdle) closing_ = Closing::kNow;
+  if (closing_ == Closing::kNow) return false;
   is_stepping_ = false;
   return true;
 }

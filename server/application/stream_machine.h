@@ -56,7 +56,8 @@ class StreamMachine : public Observer {
 
   /// Pulls from the source soon.
   void changed() override;
-  /// Ends the stream once no write is under way. The first of several statuses counts.
+  /// Ends the stream once no write is under way. The first of several statuses counts, but this
+  /// one before that of shut_down().
   void close(const google::rpc::Status& status);
   /// Ends a stream that follows changes as soon as its source has no message, or by the first step
   /// after kLastChanges, and any other stream once no write is under way.
@@ -77,6 +78,11 @@ class StreamMachine : public Observer {
   static constexpr auto kLastWrite = std::chrono::seconds(5);
 
  private:
+  enum class Closing {
+    kNo,
+    kWhenIdle,  ///< as soon as the source has no message, or by the first step after kLastChanges
+    kNow,       ///< as soon as no write is under way
+  };
   /// Returns true if only an event can cause a step. Requires the lock.
   bool is_idle() const;
   /// Ends the stream. `lock` is that of mutex_.
@@ -106,9 +112,9 @@ class StreamMachine : public Observer {
   bool is_finished_ = false;
   bool again_ = false;  // changed, or shut down, since the last step began
   Reply prepared_;      // while a write is under way: the next message
-  std::optional<google::rpc::Status> closing_;
-  std::optional<google::rpc::Status> closing_when_idle_;  // once the source has no message
-  Clock::time_point closing_at_last_;                     // even if the source has messages
+  Closing closing_ = Closing::kNo;
+  google::rpc::Status status_;         // with which the stream closes
+  Clock::time_point closing_at_last_;  // of a stream that closes when idle
   Clock::time_point end_;
   Clock::time_point writing_since_;  // of the write under way
 };

@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "server/application/call_dispatcher.h"
+#include "server/application/live_streams.h"
 #include "server/transport/acceptor.h"
 #include "server/transport/grpc/open_call_watch.h"
 #include "server/transport/grpc/services.h"
 #include "server/transport/grpc/unknown_methods.h"
 #include "server/transport/listen_address.h"
-#include "server/transport/live_streams.h"
 #include "server/transport/tls_files.h"
 
 namespace tribodyn::server {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "server/application/call_dispatcher.h"
-#include "server/transport/live_streams.h"
+#include "server/application/live_streams.h"
 
 namespace tribodyn::server {
 

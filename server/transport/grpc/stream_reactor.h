@@ -1,22 +1,20 @@
 #pragma once
 
-#include <grpcpp/alarm.h>
 #include <grpcpp/impl/codegen/proto_utils.h>
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/server_callback.h>
 
-#include <chrono>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <utility>
 
 #include "server/application/errors.h"
+#include "server/application/live_streams.h"
 #include "server/application/stream_machine.h"
 #include "server/transport/grpc/grpc_call.h"
 #include "server/transport/grpc/grpc_status.h"
-#include "server/transport/live_streams.h"
 
 namespace tribodyn::server {
 
@@ -58,10 +56,13 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
     if (const auto refused = live_.add(self)) return machine_.refuse(*refused);
     outcome.message()->observe(std::shared_ptr<Observer>(self, &machine_));
     machine_.open(std::move(outcome.message()), context.limits.deadline);
-    look_at_clock();
+    live_.follow_clock(*this);
   }
 
   void shut_down(const google::rpc::Status& status) override { machine_.shut_down(status); }
+  std::optional<StreamMachine::Clock::time_point> look_at_clock() override {
+    return machine_.look_at_clock();
+  }
   void OnWriteDone(bool ok) override {
     bytes_.Clear();
     machine_.written(ok);
@@ -108,28 +109,12 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
     if (context_ != nullptr) context_->TryCancel();
   }
 
-  void look_at_clock() {
-    const auto next = machine_.look_at_clock();
-    if (!next) return;
-    const std::weak_ptr<StreamReactor> weak = weak_from_this();
-    // One that rings cannot be set again meanwhile; and this one may ring before Set has returned.
-    const auto alarm = std::make_shared<grpc::Alarm>();
-    alarm_ = alarm;
-    using std::chrono::system_clock;
-    const auto left =
-        std::chrono::duration_cast<system_clock::duration>(*next - StreamMachine::Clock::now());
-    alarm->Set(system_clock::now() + left, [weak](bool rings) {
-      if (const auto self = rings ? weak.lock() : nullptr) self->look_at_clock();
-    });
-  }
-
   CallDispatcher& dispatcher_;
   LiveStreams& live_;
   StreamMachine machine_;
   // Recursive: TryCancel may call OnDone before it returns.
   std::recursive_mutex context_mutex_;
   grpc::CallbackServerContext* context_;  // guarded by context_mutex_; null once done
-  std::shared_ptr<grpc::Alarm> alarm_;    // set by opened(), then by itself alone
   grpc::ByteBuffer bytes_;                // of the message that is being written
   bool is_counted_ = false;
   std::shared_ptr<StreamReactor> self_;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <map>
 #include <memory>
 #include <string>
@@ -40,8 +39,6 @@ class HttpStreamWriter {
   virtual void finish(std::string part) = 0;
   /// Breaks the response off, so that the client notices that the end is missing.
   virtual void cut_off() = 0;
-  /// Calls HttpStream::wake() at this time. A further call replaces the time.
-  virtual void wake_at(std::chrono::steady_clock::time_point time) = 0;
 };
 
 /// A body that is made while it is sent. One thread calls at a time; no call may block.
@@ -52,7 +49,6 @@ class HttpStream {
   virtual void start(std::shared_ptr<HttpStreamWriter> writer) = 0;
   /// A part is written; `ok` is false if the client has gone, and then no further part is.
   virtual void written(bool ok) = 0;
-  virtual void wake() = 0;
   /// The client has gone while no part was written. Parts that are written afterwards fail.
   virtual void hang_up() = 0;
 };

@@ -56,11 +56,6 @@ class HttpServer::Connections::Writer : public HttpStreamWriter {
       if (const auto open = session.lock()) open->drop();
     });
   }
-  void wake_at(std::chrono::steady_clock::time_point time) override {
-    post([session = session_, time] {
-      if (const auto open = session.lock()) open->wake_at(time);
-    });
-  }
 
  private:
   bool post(std::function<void()> task) const {
@@ -153,14 +148,6 @@ bool HttpServer::Connections::Session::write_part(std::string part, bool is_last
                       self->part_written(failure, is_last);
                     });
   return true;
-}
-
-void HttpServer::Connections::Session::wake_at(std::chrono::steady_clock::time_point time) {
-  if (body_stream_ == nullptr) return;
-  timer_.expires_at(time);
-  timer_.async_wait([self = shared_from_this()](Error failure) {
-    if (!failure && self->body_stream_ != nullptr) self->body_stream_->wake();
-  });
 }
 
 void HttpServer::Connections::Session::drop() {

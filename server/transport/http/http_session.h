@@ -37,7 +37,6 @@ class HttpServer::Connections::Session : public std::enable_shared_from_this<Ses
 
   /// Returns false if the client has gone meanwhile.
   bool write_part(std::string part, bool is_last);
-  void wake_at(std::chrono::steady_clock::time_point time);
   /// Ends a connection whose client is gone or reads too slowly; one without a stream likewise.
   void drop();
 
@@ -68,10 +67,9 @@ class HttpServer::Connections::Session : public std::enable_shared_from_this<Ses
 
   Connections& all_;
   const std::unique_ptr<ByteStream> connection_;
-  ByteStream& stream_;  // *connection_, as Beast's functions take it
-  boost::asio::steady_timer
-      timer_;                // of a streamed body, or for a hang-up while a call is under way
-  std::string certificate_;  // common name of the client's
+  ByteStream& stream_;               // *connection_, as Beast's functions take it
+  boost::asio::steady_timer timer_;  // for a hang-up while a call is under way
+  std::string certificate_;          // common name of the client's
   boost::beast::flat_buffer buffer_;
   std::optional<boost::beast::http::request_parser<boost::beast::http::empty_body>> head_;
   std::optional<boost::beast::http::request_parser<boost::beast::http::string_body>> body_;

@@ -9,12 +9,12 @@
 #include <string>
 
 #include "server/application/call_dispatcher.h"
+#include "server/application/live_streams.h"
 #include "server/transport/http/http_message.h"
 #include "server/transport/http/http_routes.h"
 #include "server/transport/http/session_cookie.h"
 #include "server/transport/http/static_files.h"
 #include "server/transport/http/stream_format.h"
-#include "server/transport/live_streams.h"
 
 namespace tribodyn::server {
 

@@ -65,9 +65,6 @@ class RestStream final : public RestCall<StreamCall>,
     dispatcher_.step([self = shared_from_this()] { self->open_machine(); });
   }
   void written(bool ok) override { machine_.written(ok); }
-  void wake() override {
-    if (const auto next = machine_.look_at_clock()) writer_->wake_at(*next);
-  }
   void hang_up() override {
     const auto status =
         error(google::rpc::CANCELLED, v1::ERROR_REASON_CANCELLED, "the client hung up");
@@ -75,6 +72,9 @@ class RestStream final : public RestCall<StreamCall>,
     machine_.close(status);
   }
   void shut_down(const google::rpc::Status& status) override { machine_.shut_down(status); }
+  std::optional<StreamMachine::Clock::time_point> look_at_clock() override {
+    return machine_.look_at_clock();
+  }
 
  private:
   /// Gives the response of a body that never changes its ETag, its length and the requested range.
@@ -117,7 +117,7 @@ class RestStream final : public RestCall<StreamCall>,
   void open_machine() {
     source_->observe(std::shared_ptr<Observer>(shared_from_this(), &machine_));
     machine_.open(std::move(source_), context.limits.deadline);
-    wake();
+    live_->follow_clock(*this);
   }
   void run_step() override {
     dispatcher_.step([self = shared_from_this()] { self->machine_.step(); });

@@ -1,0 +1,124 @@
+#include "server/application/live_streams.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "server/application/errors.h"
+
+namespace tribodyn::server {
+namespace {
+
+constexpr double kRetrySeconds = 10;
+
+google::rpc::Status too_many(std::size_t maximum, const char* whose) {
+  return exhausted(v1::ERROR_REASON_TOO_MANY_STREAMS,
+                   fmt::format("{} streams{} are open, which is the limit; try again in {} s",
+                               maximum, whose, kRetrySeconds),
+                   kRetrySeconds);
+}
+
+}  // namespace
+
+LiveStreams::LiveStreams(std::size_t maximum, std::size_t maximum_of_peer)
+    : maximum_(maximum), maximum_of_peer_(maximum_of_peer), clock_([this] { run_clock(); }) {}
+
+LiveStreams::~LiveStreams() { end_clock(); }
+
+std::optional<google::rpc::Status> LiveStreams::add(const std::shared_ptr<LiveStream>& stream,
+                                                    const std::string& peer) {
+  const std::lock_guard lock(mutex_);
+  if (closed_) return shutting_down();
+  if (streams_.size() >= maximum_) return too_many(maximum_, "");
+  const auto of_peer = of_peers_.find(peer);
+  if (of_peer != of_peers_.end() && of_peer->second >= maximum_of_peer_) {
+    return too_many(maximum_of_peer_, " of this client");
+  }
+  streams_[stream.get()] = {.stream = stream, .peer = peer};
+  ++of_peers_[peer];
+  return std::nullopt;
+}
+
+void LiveStreams::remove(const LiveStream* stream) {
+  Entry last;  // destroyed after the lock is gone
+  const std::lock_guard lock(mutex_);
+  const auto found = streams_.find(stream);
+  if (found == streams_.end()) return;
+  last = std::move(found->second);
+  streams_.erase(found);
+  const auto of_peer = of_peers_.find(last.peer);
+  if (--of_peer->second == 0) of_peers_.erase(of_peer);
+}
+
+void LiveStreams::follow_clock(LiveStream& stream) {
+  const auto next = stream.look_at_clock();
+  if (!next) return;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = streams_.find(&stream);
+    if (found == streams_.end()) return;
+    found->second.next_look = *next;
+    if (*next >= next_look_) return;
+    next_look_ = *next;
+  }
+  changed_.notify_one();
+}
+
+void LiveStreams::run_clock() {
+  std::unique_lock lock(mutex_);
+  while (!closed_) {
+    if (Clock::now() < next_look_) {
+      changed_.wait_until(lock, next_look_);
+      continue;
+    }
+    auto due = take_due(Clock::now());
+    lock.unlock();
+    for (const auto& stream : due) {
+      try {
+        follow_clock(*stream);
+      } catch (const std::exception& failure) {  // no memory for a status: the others go on
+        spdlog::error("event=internal_error cause=\"a stream cannot end in time: {}\"",
+                      failure.what());
+      }
+    }
+    due.clear();
+    lock.lock();
+    changed_.wait_for(lock, kClockInterval, [this] { return closed_; });
+  }
+}
+
+std::vector<std::shared_ptr<LiveStream>> LiveStreams::take_due(Clock::time_point now) {
+  std::vector<std::shared_ptr<LiveStream>> due;
+  next_look_ = Clock::time_point::max();
+  for (auto& [stream, entry] : streams_) {
+    if (entry.next_look <= now) {
+      due.push_back(entry.stream);
+      entry.next_look = Clock::time_point::max();  // follow_clock() sets it
+    }
+    next_look_ = std::min(next_look_, entry.next_look);
+  }
+  return due;
+}
+
+void LiveStreams::end_clock() {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+  }
+  changed_.notify_one();
+  std::call_once(clock_ended_, [this] { clock_.join(); });
+}
+
+void LiveStreams::shut_down() {
+  end_clock();
+  std::map<const LiveStream*, Entry> open;
+  {
+    const std::lock_guard lock(mutex_);
+    open = streams_;
+  }
+  for (const auto& [key, entry] : open) entry.stream->shut_down(shutting_down());
+}
+
+}  // namespace tribodyn::server
