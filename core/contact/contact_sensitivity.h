@@ -64,14 +64,6 @@ enum class ContactInput {
 inline constexpr int kContactParameters = static_cast<int>(ContactInput::kLoad);
 inline constexpr int kContactInputs = static_cast<int>(ContactInput::kVelocity2Y) + 1;
 
-struct ContactInputName {
-  const char* name;  ///< as in the fields of the structures, with the structure before a dot
-  const char* unit;  ///< SI; "1" for none; "by law" as kLawDescriptions says
-};
-
-/// By ContactInput.
-const std::array<ContactInputName, kContactInputs>& contact_input_names();
-
 /// Returns the address of each input, by ContactInput, so that callers can read or change it.
 template <class Real>
 std::array<Real*, kContactInputs> contact_inputs(ContactParametersOf<Real>& parameters,
@@ -79,49 +71,45 @@ std::array<Real*, kContactInputs> contact_inputs(ContactParametersOf<Real>& para
   LubricantOf<Real>& oil = parameters.lubricant;
   SolidOf<Real>&one = parameters.solids.body_1, &two = parameters.solids.body_2;
   RoughnessOf<Real>& surface = parameters.roughness;
-  return {&oil.vogel_viscosity_prefactor,
-          &oil.vogel_temperature_coefficient,
-          &oil.vogel_reference_temperature,
-          &oil.pressure_viscosity_coefficient,
-          &oil.pressure_viscosity_temperature,
-          &oil.relaxation_time,
-          &oil.havriliak_negami_alpha,
-          &oil.havriliak_negami_beta,
-          &oil.rheology_reference_temperature,
-          &oil.limiting_shear_stress_at_zero_pressure,
-          &oil.limiting_shear_stress_coefficient,
-          &oil.thermal_conductivity,
-          &oil.density_at_zero_kelvin,
-          &oil.density_temperature_slope,
-          &oil.law_parameters[0],
-          &oil.law_parameters[1],
-          &oil.law_parameters[2],
-          &oil.law_parameters[3],
-          &oil.law_parameters[4],
-          &surface.asperity_density,
-          &surface.asperity_radius,
-          &surface.composite_rms_height,
-          &parameters.boundary.tribofilm_shear_strength,
-          &parameters.boundary.asperity_friction_coefficient,
-          &one.youngs_modulus,
-          &one.poissons_ratio,
-          &one.thermal_conductivity,
-          &one.density,
-          &one.specific_heat_capacity,
-          &two.youngs_modulus,
-          &two.poissons_ratio,
-          &two.thermal_conductivity,
-          &two.density,
-          &two.specific_heat_capacity,
-          &parameters.bath_temperature,
-          &parameters.inlet_temperature_rise,
-          &conditions.load,
-          &conditions.radius_x,
-          &conditions.radius_y,
-          &conditions.velocity_1_x,
-          &conditions.velocity_1_y,
-          &conditions.velocity_2_x,
-          &conditions.velocity_2_y};
+  std::array<Real*, kContactInputs> out{};
+  auto next = out.begin();
+  for (Real* const each :
+       {&oil.vogel_viscosity_prefactor, &oil.vogel_temperature_coefficient,
+        &oil.vogel_reference_temperature, &oil.pressure_viscosity_coefficient,
+        &oil.pressure_viscosity_temperature, &oil.relaxation_time, &oil.havriliak_negami_alpha,
+        &oil.havriliak_negami_beta, &oil.rheology_reference_temperature,
+        &oil.limiting_shear_stress_at_zero_pressure, &oil.limiting_shear_stress_coefficient,
+        &oil.thermal_conductivity, &oil.density_at_zero_kelvin, &oil.density_temperature_slope}) {
+    *next++ = each;
+  }
+  for (Real& each : oil.law_parameters) *next++ = &each;
+  for (Real* const each : {&surface.asperity_density,
+                           &surface.asperity_radius,
+                           &surface.composite_rms_height,
+                           &parameters.boundary.tribofilm_shear_strength,
+                           &parameters.boundary.asperity_friction_coefficient,
+                           &one.youngs_modulus,
+                           &one.poissons_ratio,
+                           &one.thermal_conductivity,
+                           &one.density,
+                           &one.specific_heat_capacity,
+                           &two.youngs_modulus,
+                           &two.poissons_ratio,
+                           &two.thermal_conductivity,
+                           &two.density,
+                           &two.specific_heat_capacity,
+                           &parameters.bath_temperature,
+                           &parameters.inlet_temperature_rise,
+                           &conditions.load,
+                           &conditions.radius_x,
+                           &conditions.radius_y,
+                           &conditions.velocity_1_x,
+                           &conditions.velocity_1_y,
+                           &conditions.velocity_2_x,
+                           &conditions.velocity_2_y}) {
+    *next++ = each;
+  }
+  return out;
 }
 
 /// An output and its derivatives, each in the output's unit over the input's, by ContactInput.

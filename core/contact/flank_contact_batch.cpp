@@ -72,10 +72,11 @@ bool can_certify_growth(ContactBlockTables& t, double tau_zero, double gamma) {
       fell = fell || !rises_here;
     }
     if (fell && t.monotone_factor == 0) t.monotone_factor = colder_factor;
-    colder_factor =
-        laws::roelands_factor(t.shear.log_vogel_prefactor +
-                              t.shear.lubricant.vogel_temperature_coefficient /
-                                  (temperature - t.shear.lubricant.vogel_reference_temperature));
+    const Lubricant& oil = t.shear.lubricant;
+    colder_factor = laws::roelands_factor(
+        laws::log_vogel_viscosity(t.shear.log_vogel_prefactor, oil.vogel_temperature_coefficient,
+                                  oil.vogel_reference_temperature, temperature)
+            .value);
   }
   return true;
 }

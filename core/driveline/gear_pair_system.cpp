@@ -71,30 +71,17 @@ void GearPairSystem::motion(const MeshPhase& phase, const ContactRegime& regime,
 }
 
 void GearPairSystem::slopes(const MeshPhase& phase, const ContactRegime& regime, const double* y,
-                            const Mechanics& at, const FrictionArms& friction,
+                            const Mechanics& at, const FrictionArms& friction, const double* dy,
                             MotionSlopes& out) const {
-  const MeshFunctions& m = at.mesh;
-  const bool gap = regime.side == 0;
-  const double load_by_force = regime.load(at.mesh_force) > 0 ? regime.side : 0;
-  const double error_by_approach = m.gear_contact_radius / constants_.gear_radius;
-  const double radius_by_approach = gear_radius_by_approach(phase, y[kMeshApproach]);
-  out.relative_radius = m.pinion_contact_radius - m.static_transmission_error_slope;
-  out.gear_radius = m.gear_contact_radius;
-  out.damping = gap && options_.damping_in_contact_only ? 0 : constants_.mesh_damping;
-  out.force_by_approach = (gap ? 0 : m.mesh_stiffness * error_by_approach) -
-                          out.damping * radius_by_approach * y[kGearSpeed];
-  out.pinion_arm = load_by_force * friction.pinion - m.pinion_contact_radius;
-  out.gear_arm = load_by_force * friction.gear + m.gear_contact_radius;
-  out.pinion_torque_by_approach = 0;
-  out.gear_torque_by_approach = at.mesh_force * radius_by_approach;
-  if (options_.energy_consistent) {
-    out.pinion_arm += m.static_transmission_error_slope;
-    if (!gap) {
-      out.pinion_torque_by_approach = -m.mesh_stiffness_slope * at.deflection * error_by_approach;
-    }
-  }
-  out.time = out.rate[kTime];
-  out.per_speed = out.time / constants_.cycle_angle;
+  const bool is_gap = regime.side == 0;
+  const HWY_NAMESPACE::SlopePlace<double> place{
+      .touches = !is_gap,
+      .damping = is_gap && options_.damping_in_contact_only ? 0 : constants_.mesh_damping,
+      .load_by_force = regime.load(at.mesh_force) > 0 ? regime.side : 0.0,
+      .radius_by_approach = gear_radius_by_approach(phase, y[kMeshApproach]),
+      .pinion_arm = friction.pinion,
+      .gear_arm = friction.gear};
+  HWY_NAMESPACE::set_motion_slopes(constants_, options_.energy_consistent, place, at, y, dy, out);
 }
 
 ContactConditions GearPairSystem::contact_conditions(const FlankKinematics& flank, double load,

@@ -77,6 +77,12 @@ inline double input_torque(const Torques& torques, double wheel_per_pinion_speed
   return std::max(torques.pinion, 0.0) + std::max(-torques.wheel * wheel_per_pinion_speed, 0.0);
 }
 
+/// Inefficiency by the RMS of the loss [%]: from the RMS over time of sum V_s F_fr / input_speed()
+/// and from input_torque(), both in N m.
+inline double inefficiency_rms(double loss_share_rms, double input_torque) {
+  return 100 * loss_share_rms / input_torque;  // (eq 30)
+}
+
 /// Everything at one instant, for records and histories.
 struct Instant : Mechanics {
   std::array<double, kFlankPairs> load{};
@@ -136,9 +142,11 @@ class GearPairSystem {
   void motion(const MeshPhase& phase, const ContactRegime& regime, const double* state,
               const FrictionArms& friction, const Torques& torques, Mechanics& at,
               double* derivative) const;
-  /// Derivatives of that motion, exact, with the friction arms held. Requires `at` and out.rate.
+  /// Derivatives of that motion, exact, with the friction arms held. Takes the mechanics and the
+  /// derivative that it set.
   void slopes(const MeshPhase& phase, const ContactRegime& regime, const double* state,
-              const Mechanics& at, const FrictionArms& friction, MotionSlopes& out) const;
+              const Mechanics& at, const FrictionArms& friction, const double* derivative,
+              MotionSlopes& out) const;
   /// What eq 2 leaves out: F e' - k_m' f^2/2 [N m].
   static double parametric_torque(const Mechanics& at);
   /// d state / d phase of the first kMarchComponents at an instant.

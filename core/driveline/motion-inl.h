@@ -79,6 +79,44 @@ HWY_INLINE void motion(const MotionConstants& c, bool energy_consistent, const R
   dy[kWheelSpeed] = time * (wheel * c.per_wheel_inertia);                      // (eq 4)
 }
 
+/// Where motion() is differentiated: what the slopes need besides mechanics and state.
+template <class Real>
+struct SlopePlace {
+  bool touches;               ///< the mesh spring acts: no gap
+  double damping;             ///< of the mesh, in effect [N s/m]
+  Real load_by_force;         ///< of the flanks' load by the mesh force: +1, -1, or 0 without load
+  Real radius_by_approach;    ///< dR_g/d(mesh approach) [-]
+  Real pinion_arm, gear_arm;  ///< of the friction, over the load [m]
+};
+
+/// The partial derivatives of motion() at `y`, with the friction arms held. `dy`: of motion().
+template <class Real>
+HWY_INLINE void set_motion_slopes(const MotionConstants& c, bool energy_consistent,
+                                  const SlopePlace<Real>& place, const MechanicsOf<Real>& at,
+                                  const Real* y, const Real* dy, MotionSlopesOf<Real>& out) {
+  const MeshFunctionsOf<Real>& m = at.mesh;
+  const Real error_by_approach = m.gear_contact_radius * (1 / c.gear_radius);
+  out.relative_radius = m.pinion_contact_radius - m.static_transmission_error_slope;
+  out.gear_radius = m.gear_contact_radius;
+  out.damping = place.damping;
+  out.force_by_approach =
+      less_product(place.damping * place.radius_by_approach, y[kGearSpeed],
+                   place.touches ? m.mesh_stiffness * error_by_approach : Real(0));
+  out.pinion_arm = fused(place.load_by_force, place.pinion_arm, -m.pinion_contact_radius);
+  out.gear_arm = fused(place.load_by_force, place.gear_arm, m.gear_contact_radius);
+  out.pinion_torque_by_approach = Real(0);
+  out.gear_torque_by_approach = at.mesh_force * place.radius_by_approach;
+  if (energy_consistent) {
+    out.pinion_arm = out.pinion_arm + m.static_transmission_error_slope;
+    if (place.touches) {
+      out.pinion_torque_by_approach = -m.mesh_stiffness_slope * at.deflection * error_by_approach;
+    }
+  }
+  out.time = dy[kTime];
+  out.per_speed = 1 / y[kPinionSpeed];
+  for (int i = 0; i < kMotionStates; ++i) out.rate[i] = dy[i];
+}
+
 /// The derivative of motion() by time in the direction `s`, besides torques that change by
 /// themselves: callers add those, then call by_phase(). Real: what the directions are; the slopes'
 /// numbers are its factors.

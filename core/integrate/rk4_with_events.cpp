@@ -71,8 +71,7 @@ void Rk4WithEvents::step(FrozenFriction& friction, const Span& span, const March
     system_.motion(*phases[i], regime_, stage.data(), here, torques_, at, rate.data());
     for (int j = 0; j < kStates; ++j) to[j] += kRungeKuttaWeight[i] * h * rate[j];
     if (store_stages_) {
-      stages_[i].rate = rate;
-      system_.slopes(*phases[i], regime_, stage.data(), at, here, stages_[i]);
+      system_.slopes(*phases[i], regime_, stage.data(), at, here, rate.data(), stages_[i]);
     }
     if (i == 0) first_rate_ = rate;
   }

@@ -105,27 +105,15 @@ HWY_INLINE void rates(const Constants& c, const Phase& phase, const Pack* y, Mec
 /// As GearPairSystem::slopes().
 HWY_INLINE void set_slopes(const Constants& c, const Phase& phase, const MechanicsOf<Pack>& at,
                            const Pack* y, const Pack* dy, MotionSlopesOf<Pack>& out) {
-  const MeshFunctionsOf<Pack>& m = at.mesh;
-  const Pack load_by_force = where(c.side * at.mesh_force > 0, c.side);
-  const Pack error_by_approach = m.gear_contact_radius * (1 / c.motion.gear_radius);
-  const Pack radius_by_approach =
-      -c.lag_per_approach * gear_radius_slope(phase, series_place(c, phase, y));
-  out.relative_radius = m.pinion_contact_radius - m.static_transmission_error_slope;
-  out.gear_radius = m.gear_contact_radius;
-  out.damping = c.motion.mesh_damping;
-  out.force_by_approach = less_product(c.motion.mesh_damping * radius_by_approach, y[kGearSpeed],
-                                       m.mesh_stiffness * error_by_approach);
-  out.pinion_arm = fused(load_by_force, phase.torque(kPinionFrictionRow), -m.pinion_contact_radius);
-  out.gear_arm = fused(load_by_force, phase.torque(kGearFrictionRow), m.gear_contact_radius);
-  out.pinion_torque_by_approach = 0;
-  out.gear_torque_by_approach = at.mesh_force * radius_by_approach;
-  if (c.energy_consistent) {
-    out.pinion_arm = out.pinion_arm + m.static_transmission_error_slope;
-    out.pinion_torque_by_approach = -m.mesh_stiffness_slope * at.deflection * error_by_approach;
-  }
-  out.time = dy[kTime];
-  out.per_speed = 1 / y[kPinionSpeed];
-  for (int i = 0; i < kStates; ++i) out.rate[i] = dy[i];
+  const SlopePlace<Pack> place{
+      .touches = true,
+      .damping = c.motion.mesh_damping,
+      .load_by_force = where(c.side * at.mesh_force > 0, c.side),
+      .radius_by_approach =
+          -c.lag_per_approach * gear_radius_slope(phase, series_place(c, phase, y)),
+      .pinion_arm = phase.torque(kPinionFrictionRow),
+      .gear_arm = phase.torque(kGearFrictionRow)};
+  set_motion_slopes(c.motion, c.energy_consistent, place, at, y, dy, out);
 }
 
 void differentiate(const Constants& c, const MotionSlopesOf<Pack>* stages, double h, int lane,

@@ -43,11 +43,19 @@ struct StepBlock {
 /// Unknowns of a step: the states but time, then the torque.
 inline constexpr int kStepUnknowns = 8;
 
-/// Takes one classical Runge-Kutta step from every start of `response`; time is not read. Writes to
-/// `end` the states at the ends of the steps and, in row kTime, the durations. Unless `derivatives`
-/// is null, writes to it, lane by lane, the 8 x 8 Jacobian of each step row after row: duration and
-/// states at the end by states at the start and the unknown torque. Returns false beyond the reach
-/// of the grid's series, or if a number is not finite.
+/// Takes one classical Runge-Kutta step from every start of `response`: lane s is step s.
+///
+/// | columns | row | in lane s | unit |
+/// |---|---|---|---|
+/// | response.start | kTime | not read | |
+/// | response.start | i = 1 ... 7 | state i at the start of the step | of MarchComponent |
+/// | end | kTime | duration of the step | s |
+/// | end | i = 1 ... 7 | state i at the end of the step | of MarchComponent |
+/// | derivatives | 8 i + j, j = 0 ... 6 | d(row i of end)/d(state j + 1 at the start) | quotient |
+/// | derivatives | 8 i + 7 | d(row i of end)/d(unknown torque) | quotient |
+///
+/// `derivatives` may be null: they are then not computed. Returns false beyond the reach of the
+/// grid's series, or if a number is not finite.
 bool rk4_steps(InstructionSet instruction_set, const StepBlock& block,
                const CycleResponse& response, Columns& end, Columns* derivatives);
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/celsius.h"
+#include "core/laws/laws.h"
 #include "core/number_text.h"
 #include "core/numerics/bracketed_root.h"
 #include "core/refusal.h"
@@ -275,8 +276,9 @@ VogelFit fit_vogel_at(std::span<const ViscosityPoint> points, double reference_t
 }
 
 double log_viscosity(const VogelFit& fit, double temperature) {
-  return std::log(fit.viscosity_prefactor) +
-         fit.temperature_coefficient / (temperature - fit.reference_temperature);
+  return laws::log_vogel_viscosity(std::log(fit.viscosity_prefactor), fit.temperature_coefficient,
+                                   fit.reference_temperature, temperature)
+      .value;
 }
 
 double relative_viscosity_uncertainty(const VogelFit& fit, double temperature) {

@@ -124,8 +124,9 @@ class OrbitDifferentiator {
                 const FrictionArms& arms, DifferentiatedInstant& out) {
     Mechanics at;
     StageSlopes& s = out.slopes;
-    system_.motion(phase, regime, y.data(), arms, orbit_.torques, at, s.rate.data());
-    system_.slopes(phase, regime, y.data(), at, arms, s);
+    std::array<double, kMotionStates> rate;
+    system_.motion(phase, regime, y.data(), arms, orbit_.torques, at, rate.data());
+    system_.slopes(phase, regime, y.data(), at, arms, rate.data(), s);
     s.load = regime.load(at.mesh_force);
     out.error_by_approach = at.mesh.gear_contact_radius / constants_.gear_radius;
     out.velocity_by_approach =
@@ -424,7 +425,7 @@ class OrbitDifferentiator {
     const double energy = 100 * integral_[kLossSum] / (input * turned);
     set_figure(OrbitFigure::kInefficiencyEnergyMean, energy,
                100 / (input * turned) * loss_by - energy / input * input_by);
-    const double rms = 100 / input * std::sqrt(integral_[kSquaredLoss] / time);
+    const double rms = inefficiency_rms(std::sqrt(integral_[kSquaredLoss] / time), input);
     set_figure(OrbitFigure::kInefficiencyRms, rms,
                rms * (0.5 / integral_[kSquaredLoss] * total.row(kSquaredLoss) +
                       0.5 / mean_speed_ * speed - 1 / input * input_by));

@@ -83,7 +83,7 @@ void ResponseRecord::fill(const Torques& torques, double cycles, bool periodic,
   out.mesh_loss_torque = out.mesh_loss_power / out.mean_pinion_speed;
   // Without a pinion torque the flanks float, and what turns them is not known.
   if (torques.pinion != 0 && out.input_power > 1e-9 * out.mesh_loss_power) {
-    out.inefficiency_rms = 100 / input * std::sqrt(y[kLossShareSquared] / time);  // (eq 30)
+    out.inefficiency_rms = inefficiency_rms(std::sqrt(y[kLossShareSquared] / time), input);
     out.inefficiency_energy_mean = 100 * out.mesh_loss_power / out.input_power;
   }
   if (y[kViscousForceSquared] > 0) {

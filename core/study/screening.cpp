@@ -18,7 +18,7 @@ PointFigures figures_of(const PointProblem& problem, const PeriodicOrbit& orbit,
                                       static_cast<double>(system.mesh().gear_teeth()));
   out.pinion_torque = orbit.torques.pinion;
   out.wheel_torque = orbit.torques.wheel;
-  out.inefficiency_rms = 100 * f.loss_rms / torque;
+  out.inefficiency_rms = inefficiency_rms(f.loss_rms, torque);
   out.inefficiency_energy_mean = 100 * f.loss_energy / (torque * turned);
   out.mesh_loss_power = f.loss_energy * target.mean_pinion_speed / turned;
   out.dte_minimum = f.dte_minimum;
