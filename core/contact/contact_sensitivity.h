@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 
@@ -71,44 +72,49 @@ std::array<Real*, kContactInputs> contact_inputs(ContactParametersOf<Real>& para
   LubricantOf<Real>& oil = parameters.lubricant;
   SolidOf<Real>&one = parameters.solids.body_1, &two = parameters.solids.body_2;
   RoughnessOf<Real>& surface = parameters.roughness;
-  std::array<Real*, kContactInputs> out{};
-  auto next = out.begin();
-  for (Real* const each :
-       {&oil.vogel_viscosity_prefactor, &oil.vogel_temperature_coefficient,
-        &oil.vogel_reference_temperature, &oil.pressure_viscosity_coefficient,
-        &oil.pressure_viscosity_temperature, &oil.relaxation_time, &oil.havriliak_negami_alpha,
-        &oil.havriliak_negami_beta, &oil.rheology_reference_temperature,
-        &oil.limiting_shear_stress_at_zero_pressure, &oil.limiting_shear_stress_coefficient,
-        &oil.thermal_conductivity, &oil.density_at_zero_kelvin, &oil.density_temperature_slope}) {
-    *next++ = each;
-  }
+  const std::array first{&oil.vogel_viscosity_prefactor,
+                         &oil.vogel_temperature_coefficient,
+                         &oil.vogel_reference_temperature,
+                         &oil.pressure_viscosity_coefficient,
+                         &oil.pressure_viscosity_temperature,
+                         &oil.relaxation_time,
+                         &oil.havriliak_negami_alpha,
+                         &oil.havriliak_negami_beta,
+                         &oil.rheology_reference_temperature,
+                         &oil.limiting_shear_stress_at_zero_pressure,
+                         &oil.limiting_shear_stress_coefficient,
+                         &oil.thermal_conductivity,
+                         &oil.density_at_zero_kelvin,
+                         &oil.density_temperature_slope};
+  const std::array last{&surface.asperity_density,
+                        &surface.asperity_radius,
+                        &surface.composite_rms_height,
+                        &parameters.boundary.tribofilm_shear_strength,
+                        &parameters.boundary.asperity_friction_coefficient,
+                        &one.youngs_modulus,
+                        &one.poissons_ratio,
+                        &one.thermal_conductivity,
+                        &one.density,
+                        &one.specific_heat_capacity,
+                        &two.youngs_modulus,
+                        &two.poissons_ratio,
+                        &two.thermal_conductivity,
+                        &two.density,
+                        &two.specific_heat_capacity,
+                        &parameters.bath_temperature,
+                        &parameters.inlet_temperature_rise,
+                        &conditions.load,
+                        &conditions.radius_x,
+                        &conditions.radius_y,
+                        &conditions.velocity_1_x,
+                        &conditions.velocity_1_y,
+                        &conditions.velocity_2_x,
+                        &conditions.velocity_2_y};
+  static_assert(first.size() + kMostLawParameters + last.size() == kContactInputs);
+  std::array<Real*, kContactInputs> out;
+  auto next = std::copy(first.begin(), first.end(), out.begin());
   for (Real& each : oil.law_parameters) *next++ = &each;
-  for (Real* const each : {&surface.asperity_density,
-                           &surface.asperity_radius,
-                           &surface.composite_rms_height,
-                           &parameters.boundary.tribofilm_shear_strength,
-                           &parameters.boundary.asperity_friction_coefficient,
-                           &one.youngs_modulus,
-                           &one.poissons_ratio,
-                           &one.thermal_conductivity,
-                           &one.density,
-                           &one.specific_heat_capacity,
-                           &two.youngs_modulus,
-                           &two.poissons_ratio,
-                           &two.thermal_conductivity,
-                           &two.density,
-                           &two.specific_heat_capacity,
-                           &parameters.bath_temperature,
-                           &parameters.inlet_temperature_rise,
-                           &conditions.load,
-                           &conditions.radius_x,
-                           &conditions.radius_y,
-                           &conditions.velocity_1_x,
-                           &conditions.velocity_1_y,
-                           &conditions.velocity_2_x,
-                           &conditions.velocity_2_y}) {
-    *next++ = each;
-  }
+  std::copy(last.begin(), last.end(), next);
   return out;
 }
 

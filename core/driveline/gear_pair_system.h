@@ -142,8 +142,8 @@ class GearPairSystem {
   void motion(const MeshPhase& phase, const ContactRegime& regime, const double* state,
               const FrictionArms& friction, const Torques& torques, Mechanics& at,
               double* derivative) const;
-  /// Derivatives of that motion, exact, with the friction arms held. Takes the mechanics and the
-  /// derivative that it set.
+  /// Derivatives of that motion, exact, with the friction arms held. `at` and `derivative`: as
+  /// motion() has set them.
   void slopes(const MeshPhase& phase, const ContactRegime& regime, const double* state,
               const Mechanics& at, const FrictionArms& friction, const double* derivative,
               MotionSlopes& out) const;

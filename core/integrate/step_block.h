@@ -51,8 +51,8 @@ inline constexpr int kStepUnknowns = 8;
 /// | response.start | i = 1 ... 7 | state i at the start of the step | of MarchComponent |
 /// | end | kTime | duration of the step | s |
 /// | end | i = 1 ... 7 | state i at the end of the step | of MarchComponent |
-/// | derivatives | 8 i + j, j = 0 ... 6 | d(row i of end)/d(state j + 1 at the start) | quotient |
-/// | derivatives | 8 i + 7 | d(row i of end)/d(unknown torque) | quotient |
+/// | derivatives | 8 i + j, j = 0 ... 6 | d(row i of end)/d(state j + 1 at the start) | end's over
+/// state's | | derivatives | 8 i + 7 | d(row i of end)/d(unknown torque) | end's over N m |
 ///
 /// `derivatives` may be null: they are then not computed. Returns false beyond the reach of the
 /// grid's series, or if a number is not finite.

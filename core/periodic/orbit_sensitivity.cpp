@@ -9,6 +9,7 @@
 #include "core/integrate/mesh_cycle_march.h"
 #include "core/integrate/piece_adjoint.h"
 #include "core/integrate/runge_kutta.h"
+#include "core/numerics/square.h"
 #include "core/periodic/leading_multiplier.h"
 #include "core/periodic/orbit_contacts.h"
 
@@ -34,7 +35,10 @@ struct DifferentiatedInstant {
 
 class OrbitDifferentiator {
  public:
-  OrbitDifferentiator(const PeriodicProblem& problem, const PeriodicOrbit& orbit)
+  /// The multiplier does without the integrals and without what moved events do to their steps.
+  enum class Wanted { kAll, kMultiplier };
+
+  OrbitDifferentiator(const PeriodicProblem& problem, const PeriodicOrbit& orbit, Wanted wanted)
       : system_(problem.system),
         grid_(problem.grids.with_steps(orbit.steps_per_mesh_cycle)),
         orbit_(orbit),
@@ -46,7 +50,9 @@ class OrbitDifferentiator {
         instruction_set_(problem.contacts.instruction_set()),
         constants_(system_.constants()),
         model_(problem.contacts.model()),
-        contacts_(system_, grid_, problem.contacts, model_, orbit, light_load_) {}
+        contacts_(system_, grid_, problem.contacts, model_, orbit, light_load_),
+        batch_(problem.contacts),
+        wanted_(wanted) {}
 
   std::optional<OrbitSensitivity> run() { return pass_through() ? close() : std::nullopt; }
 
@@ -73,7 +79,7 @@ class OrbitDifferentiator {
     for (std::size_t i = orbit_.pieces.size(); i-- > 0;) {
       evaluate_instants(i);
       if (i + 1 < orbit_.pieces.size()) cross_event(i);
-      pass_piece(i);
+      if (!pass_piece(i)) return false;
     }
     return true;
   }
@@ -201,9 +207,26 @@ class OrbitDifferentiator {
     return out;
   }
 
+  /// The middle and the end of a piece, or displacements of the two.
+  struct MiddleAndEnd {
+    ByState middle{}, end{};
+  };
+  /// What displacements in the piece at hand do, in each group, at a fixed phase.
+  std::array<AdjointRow, kGroups> weighed(const MiddleAndEnd& moved) const {
+    std::array<AdjointRow, kGroups> out{};
+    for (int i = 0; i < kRates; ++i) {
+      for (int f = 0; f < kAdjointLanes; ++f) {
+        for (int g = 0; g < kGroups; ++g) out[g][f] += moved.end[i] * adjoint_[g][i][f];
+        out[kOfFigures][f] += moved.end[i] * direct_[2][i][f] + moved.middle[i] * direct_[1][i][f];
+      }
+    }
+    return out;
+  }
+
   /// Adds what the change of the event at the end of a piece does through the state there: there
-  /// the transmission error is that of touching flanks, or the mesh force is 0.
-  void pass_event(std::size_t index) {
+  /// the transmission error is that of touching flanks, or the mesh force is 0. `off_motion`: how
+  /// far the step's end leaves the motion, for each unit of the event's phase.
+  void pass_event(std::size_t index, const MiddleAndEnd& off_motion) {
     const OrbitPiece& p = orbit_.pieces[index];
     const bool touch = p.regime.side != orbit_.pieces[index + 1].regime.side;
     const DifferentiatedInstant& end = part_[2];
@@ -213,28 +236,38 @@ class OrbitDifferentiator {
     } else {
       zero = by_state(end, {1, 0, 0});
     }
-    const double slope = touch ? contacts_.at(index, 2).transmission_velocity * end.slopes.time
-                               : force_slope(index, 2);
+    double slope = touch ? contacts_.at(index, 2).transmission_velocity * end.slopes.time
+                         : force_slope(index, 2);
+    const std::array<AdjointRow, kGroups> off = weighed(off_motion);
+    for (int i = 1; i < kRates; ++i) slope += zero[i] * off_motion.end[i];
     for (int i = 1; i < kRates; ++i) {
       const double change = -zero[i] / slope;
       for (int g = 0; g < kGroups; ++g) {
-        for (int f = 0; f < kAdjointLanes; ++f) adjoint_[g][i][f] += change * event_adjoint_[g][f];
+        for (int f = 0; f < kAdjointLanes; ++f) {
+          adjoint_[g][i][f] += change * (event_adjoint_[g][f] + off[g][f]);
+        }
       }
     }
   }
 
-  void pass_piece(std::size_t index) {
+  bool pass_piece(std::size_t index) {
     const OrbitPiece& p = orbit_.pieces[index];
     const bool begins = index > 0 && is_event(index - 1);
     const bool ends = index + 1 < orbit_.pieces.size() && is_event(index);
     for (StateAdjoint& each : direct_) each = {};
     AdjointRow begin_adjoint{};
-    add_integrals(index, begins, ends, begin_adjoint);
+    MiddleAndEnd off_motion[2];  // by the phase of the start and of the end
+    if (wanted_ == Wanted::kAll) {
+      if ((begins || ends) && !follow_motion(index, begins, ends)) return false;
+      add_integrals(index, begins, ends, begin_adjoint);
+      if (begins) off_motion[0] = off_motion_by(p, 1, 0);
+      if (ends) off_motion[1] = off_motion_by(p, 0, 1);
+    }
     if (minimum_.piece == index) differentiate_extreme(p, minimum_, kMinimum);
     if (maximum_.piece == index) differentiate_extreme(p, maximum_, kMaximum);
-    if (ends) pass_event(index);
-    event_adjoint_ = {};
-    event_adjoint_[kOfFigures] = begin_adjoint;
+    if (ends) pass_event(index, off_motion[1]);
+    event_adjoint_ = weighed(off_motion[0]);
+    for (int f = 0; f < kAdjointLanes; ++f) event_adjoint_[kOfFigures][f] += begin_adjoint[f];
 
     PieceSlopes slopes;
     slopes.length = p.length;
@@ -256,31 +289,143 @@ class OrbitDifferentiator {
         contacts_.weigh_arms(contacts_.at(index, part), g, by.arm[part]);
       }
     }
+    return true;
   }
 
   double input_speed(double pinion_shaft_speed, double wheel_speed) const {
     return system_.input_speed(orbit_.torques, pinion_shaft_speed, wheel_speed);
   }
 
-  /// The integrals of a piece by Simpson's rule. An end of the piece that is an event moves with
-  /// it, and the middle half as far. Where the load begins or ends, the integrands stay 0; at a
-  /// fixed phase they would have infinite derivatives, because they rise there like a power below 1
-  /// of the force. Elsewhere their change with phase is that with the force; all else changes
-  /// little within a piece.
+  /// What is integrated over phase, at an instant.
+  using Integrands = std::array<double, kIntegrals>;
+  Integrands integrands(const MarchState& y, const Instant& at) const {
+    Integrands out{};
+    out[kLossSum] = at.loss_power;
+    out[kFrictionTorqueSum] = at.pinion_friction_torque;
+    for (int k = 0; k < kFlankPairs; ++k) {
+      out[kLoadSum] += at.load[k];
+      out[kFilmRatioLoadSum] += at.contact[k].film_ratio * at.load[k];
+      out[kTemperatureLoadSum] += at.contact[k].contact_temperature * at.load[k];
+    }
+    out[kSquaredLoss] = square(at.loss_power / input_speed(y[kPinionShaftSpeed], y[kWheelSpeed]));
+    for (double& each : out) each *= system_.cycle_angle() / y[kPinionSpeed];
+    return out;
+  }
+
+  /// How integrands and friction arms change with phase along the motion.
+  struct ChangeAlong {
+    Integrands integrands{};
+    FrictionArms arms;  ///< 0 where the arms are held
+  };
+
+  /// Sets along_ at the parts of a piece that move with an event at its start or end, where they
+  /// are under load: by central differences over a thousandth of the piece to either side, whose
+  /// relative error is about 1e-6. Returns false if a contact is refused.
+  bool follow_motion(std::size_t index, bool begins, bool ends) {
+    const OrbitPiece& p = orbit_.pieces[index];
+    const double step = 1e-3 * p.length;
+    const double cycle = std::floor(p.phase + 1e-9);
+    const int interval = system_.mesh().interval_at(p.phase + 0.5 * p.length - cycle);
+    ContactTally tally;
+    ContactSolver contacts(batch_, tally);
+    for (int part = 0; part < 3; ++part) {
+      along_[part] = {};
+      const bool moves = part == 0 ? begins : part == 2 ? ends : begins || ends;
+      const ContactsAt& unmoved = contacts_.at(index, part);
+      if (!moves || !has_load(unmoved)) continue;
+      for (const double shift : {-step, step}) {
+        MarchState y = state_of(p, part);
+        for (int i = 0; i < kRates; ++i) y[i] += shift * part_[part].slopes.rate[i];
+        Instant at;
+        const double phase = p.phase + 0.5 * part * p.length + shift - cycle;
+        if (system_.evaluate(phase, interval, p.regime, y.data(), contacts, at) !=
+            ContactStatus::kOk) {
+          return false;
+        }
+        const Integrands there = integrands(y, at);
+        for (int f = 0; f < kIntegrals; ++f) along_[part].integrands[f] += there[f] / (2 * shift);
+        if (!unmoved.arms_follow) continue;
+        const double per_load = 1 / (2 * shift * p.regime.load(at.mesh_force));
+        along_[part].arms.pinion += at.pinion_friction_torque * per_load;
+        along_[part].arms.gear += at.gear_friction_torque * per_load;
+      }
+    }
+    return true;
+  }
+  bool has_load(const ContactsAt& at) const { return at.load > kNoLoad * light_load_; }
+
+  /// Takes the step of a piece anew whose start and end have moved by so much phase: from where the
+  /// motion has taken its start, with the friction arms there.
+  MiddleAndEnd moved_piece(const OrbitPiece& p, double start_shift, double end_shift) {
+    const double length = p.length + end_shift - start_shift;
+    FrictionArms arms[3];
+    MeshPhase phase[3];
+    for (int part = 0; part < 3; ++part) {
+      const double shift = (1 - 0.5 * part) * start_shift + 0.5 * part * end_shift;
+      const double at = p.phase + 0.5 * part * p.length;
+      arms[part] = friction_.at(at);
+      arms[part].pinion += shift * along_[part].arms.pinion;
+      arms[part].gear += shift * along_[part].arms.gear;
+      phase[part] = system_.at_phase(at + shift - std::floor(at + shift));
+    }
+    ByState start{}, rate{}, first_rate{};
+    // Friction follows the force as it does in the slopes of the piece: no kink where F is 0.
+    const auto set_rate = [&](int part, const StageSlopes& slopes, const ByState& y) {
+      Mechanics at;
+      system_.mechanics(phase[part], p.regime, y.data(), at);
+      const double load = slopes.load > 0 ? p.regime.side * at.mesh_force : 0;
+      at.pinion_friction_torque = arms[part].pinion * load;
+      at.gear_friction_torque = arms[part].gear * load;
+      system_.motion(y.data(), at, orbit_.torques, rate.data());
+    };
+    for (int i = 0; i < kRates; ++i) start[i] = p.start[i] + start_shift * part_[0].slopes.rate[i];
+    MiddleAndEnd out;
+    out.end = start;
+    for (int n = 0; n < 4; ++n) {
+      ByState stage = start;
+      for (int i = 0; i < kRates; ++i) stage[i] += kRungeKuttaNode[n] * length * rate[i];
+      set_rate(n == 0 ? 0 : n == 3 ? 2 : 1, n == 0 ? part_[0].slopes : stage_[n].slopes, stage);
+      if (n == 0) first_rate = rate;
+      for (int i = 0; i < kRates; ++i) out.end[i] += kRungeKuttaWeight[n] * length * rate[i];
+    }
+    set_rate(2, part_[2].slopes, out.end);
+    for (int i = 0; i < kRates; ++i) {
+      out.middle[i] = 0.5 * (start[i] + out.end[i]) + length / 8 * (first_rate[i] - rate[i]);
+    }
+    return out;
+  }
+
+  /// By how much middle and end of a piece leave the motion, for each unit of the phase of its
+  /// start (1, 0) or of its end (0, 1): along the motion a step errs by what its length decides.
+  MiddleAndEnd off_motion_by(const OrbitPiece& p, int of_start, int of_end) {
+    const double step = 1e-3 * p.length;
+    MiddleAndEnd out = moved_piece(p, of_start * step, of_end * step);
+    const MiddleAndEnd other = moved_piece(p, -of_start * step, -of_end * step);
+    for (int i = 0; i < kRates; ++i) {
+      out.middle[i] =
+          (out.middle[i] - other.middle[i]) / (2 * step) - 0.5 * part_[1].slopes.rate[i];
+      out.end[i] = (out.end[i] - other.end[i]) / (2 * step) - of_end * part_[2].slopes.rate[i];
+    }
+    return out;
+  }
+
+  /// Adds the integrals of a piece by Simpson's rule. An end of the piece that is an event moves
+  /// with it, and the middle half as far. Where the load begins or ends, the integrands stay 0; at
+  /// a fixed phase they would have infinite derivatives, because they rise there like a power below
+  /// 1 of the force.
   void add_integrals(std::size_t index, bool begins, bool ends, AdjointRow& begin_adjoint) {
     const OrbitPiece& p = orbit_.pieces[index];
     AdjointRow sum{};
     for (int part = 0; part < 3; ++part) {
       const ContactsAt& at = contacts_.at(index, part);
-      if (!(p.regime.load(at.mesh_force) > kNoLoad * light_load_)) continue;
+      if (!has_load(at)) continue;
       const MarchState& y = state_of(p, part);
-      const double per_phase = system_.cycle_angle() / y[kPinionSpeed];
-      const double weight = p.length / 6 * (part == 1 ? 4 : 1) * per_phase;
+      const double phase_weight = p.length / 6 * (part == 1 ? 4 : 1);
+      const double weight = phase_weight * system_.cycle_angle() / y[kPinionSpeed];
       const double speed = input_speed(y[kPinionShaftSpeed], y[kWheelSpeed]);
       const double share = at.sum[kLossSum] / speed;
       const double by_loss = 2 * share / speed;  // of the square
-      const bool moves = part == 0 ? begins : part == 2 ? ends : begins || ends;
-      const double force_change = moves ? weight * force_slope(index, part) : 0;
+      const Integrands& change = along_[part].integrands;
       for (int f = 0; f < kIntegrals; ++f) {
         const bool squared = f == kSquaredLoss;
         const double value = weight * (squared ? share * share : at.sum[f]);
@@ -299,8 +444,8 @@ class OrbitDifferentiator {
         for (int i = 1; i < kRates; ++i) direct_[part][i][f] += by[i];
         sum[f] += value;
         // Of the events' phases.
-        begin_adjoint[f] += begins ? (1 - 0.5 * part) * force_change * slopes[0] : 0;
-        event_adjoint_[kOfFigures][f] += ends ? 0.5 * part * force_change * slopes[0] : 0;
+        begin_adjoint[f] += begins ? (1 - 0.5 * part) * phase_weight * change[f] : 0;
+        event_adjoint_[kOfFigures][f] += ends ? 0.5 * part * phase_weight * change[f] : 0;
       }
       contacts_.weigh_sums(at, weight, kSquaredLoss, weight * by_loss);
     }
@@ -451,8 +596,11 @@ class OrbitDifferentiator {
   const MotionConstants& constants_;
   ContactSensitivityModel model_;
   OrbitContacts contacts_;
+  const FlankContactBatch& batch_;
+  Wanted wanted_;
   /// Of the piece at hand, and the start of the one behind it.
   DifferentiatedInstant part_[3]{}, stage_[4]{}, behind_{};
+  ChangeAlong along_[3];  ///< of a piece with an event at its start or end
   std::array<StateAdjoint, 3> direct_;
   std::array<StateAdjoint, kGroups> adjoint_{};
   std::array<AdjointRow, kGroups> event_adjoint_{};  ///< of the phase of the event at a piece's end
@@ -467,12 +615,13 @@ class OrbitDifferentiator {
 
 std::optional<OrbitSensitivity> orbit_sensitivity(const PeriodicProblem& problem,
                                                   const PeriodicOrbit& orbit) {
-  return OrbitDifferentiator(problem, orbit).run();
+  return OrbitDifferentiator(problem, orbit, OrbitDifferentiator::Wanted::kAll).run();
 }
 
 std::optional<double> multiplier_with_friction(const PeriodicProblem& problem,
                                                const PeriodicOrbit& orbit) {
-  return OrbitDifferentiator(problem, orbit).largest_multiplier();
+  return OrbitDifferentiator(problem, orbit, OrbitDifferentiator::Wanted::kMultiplier)
+      .largest_multiplier();
 }
 
 }  // namespace tribodyn

@@ -31,6 +31,10 @@ void record_orbit(const GearPairSystem& system, const PeriodicOrbit& orbit,
   // The first components are the state itself, at the end.
   const MarchState& end = orbit.pieces.back().end;
   for (int i = kTime; i <= kWheelSpeed; ++i) record.integrals[i] = end[i];
+  // In a period the shafts turn with the teeth: no quadrature.
+  record.integrals[kPinionShaftAngle] = orbit.period * system.cycle_angle();
+  record.integrals[kWheelAngle] = record.integrals[kPinionShaftAngle] *
+                                  system.mesh().pinion_teeth() / system.mesh().gear_teeth();
   record.set_transmission_error_range(orbit.figures.dte_minimum, orbit.figures.dte_maximum);
 }
 

@@ -53,15 +53,17 @@ void LiveStreams::remove(const LiveStream* stream) {
 }
 
 void LiveStreams::follow_clock(LiveStream& stream) {
-  const auto next = stream.look_at_clock();
-  if (!next) return;
+  set_next_look(stream, stream.look_at_clock().value_or(Clock::time_point::max()));
+}
+
+void LiveStreams::set_next_look(const LiveStream& stream, Clock::time_point time) {
   {
     const std::lock_guard lock(mutex_);
     const auto found = streams_.find(&stream);
     if (found == streams_.end()) return;
-    found->second.next_look = *next;
-    if (*next >= next_look_) return;
-    next_look_ = *next;
+    found->second.next_look = time;
+    if (time >= next_look_) return;
+    next_look_ = time;
   }
   changed_.notify_one();
 }
@@ -73,29 +75,27 @@ void LiveStreams::run_clock() {
       changed_.wait_until(lock, next_look_);
       continue;
     }
-    auto due = take_due(Clock::now());
-    lock.unlock();
-    for (const auto& stream : due) {
-      try {
-        follow_clock(*stream);
-      } catch (const std::exception& failure) {  // no memory for a status: the others go on
-        spdlog::error("event=internal_error cause=\"a stream cannot end in time: {}\"",
-                      failure.what());
-      }
+    try {
+      auto due = take_due(Clock::now());
+      lock.unlock();
+      for (const auto& stream : due) follow_clock(*stream);
+      due.clear();                             // may destroy streams: without the lock
+    } catch (const std::exception& failure) {  // no memory for a list or a status
+      spdlog::error("event=internal_error cause=\"time limits of streams: {}\"", failure.what());
     }
-    due.clear();
-    lock.lock();
+    if (!lock.owns_lock()) lock.lock();
     changed_.wait_for(lock, kClockInterval, [this] { return closed_; });
   }
 }
 
 std::vector<std::shared_ptr<LiveStream>> LiveStreams::take_due(Clock::time_point now) {
   std::vector<std::shared_ptr<LiveStream>> due;
+  due.reserve(streams_.size());
   next_look_ = Clock::time_point::max();
   for (auto& [stream, entry] : streams_) {
     if (entry.next_look <= now) {
       due.push_back(entry.stream);
-      entry.next_look = Clock::time_point::max();  // follow_clock() sets it
+      entry.next_look = now + kClockInterval;  // until follow_clock() has set it
     }
     next_look_ = std::min(next_look_, entry.next_look);
   }

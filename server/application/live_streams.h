@@ -29,9 +29,9 @@ class LiveStream {
 
 /// The open streams of a transport: limits their number, enforces their time limits, and ends them
 /// when the server stops (grpc::Server::Shutdown never returns while one callback RPC is
-/// unfinished). One thread looks at the clock for all streams: a timer of its own costs each half a
-/// kilobyte. Safe for concurrent access. shut_down() must precede the destructor if a stream may be
-/// the last owner of the object.
+/// unfinished). One thread enforces the limits of all: a timer for each stream would take half a
+/// kilobyte. Safe for concurrent access. Must outlive the calls of its functions; shut_down() must
+/// precede the destructor if a stream may be the last owner of the object.
 class LiveStreams {
  public:
   using Clock = std::chrono::steady_clock;
@@ -47,11 +47,12 @@ class LiveStreams {
   std::optional<google::rpc::Status> add(const std::shared_ptr<LiveStream>& stream,
                                          const std::string& peer = {});
   void remove(const LiveStream* stream);
-  /// Calls look_at_clock() of a stream that was added: now and at each time that it returns, up to
-  /// kClockInterval later.
+  /// Called once for a stream that was added. Calls its look_at_clock() now, and from then on, on
+  /// the thread of this object, at the times that look_at_clock() returned or up to kClockInterval
+  /// after them.
   void follow_clock(LiveStream& stream);
   static constexpr auto kClockInterval = std::chrono::milliseconds(100);
-  /// Ends all soon, and lets none open any more. From now on no clock is looked at.
+  /// Ends all soon, lets none open any more, and ends the thread: time limits hold no longer.
   void shut_down();
 
  private:
@@ -61,8 +62,10 @@ class LiveStreams {
     Clock::time_point next_look = Clock::time_point::max();
   };
   void run_clock();
-  /// Returns the streams whose time has come. Requires the lock.
+  /// Returns the streams whose time has come, and sets their next look to one interval from `now`.
+  /// Requires the lock.
   std::vector<std::shared_ptr<LiveStream>> take_due(Clock::time_point now);
+  void set_next_look(const LiveStream& stream, Clock::time_point time);
   void end_clock();
 
   const std::size_t maximum_;

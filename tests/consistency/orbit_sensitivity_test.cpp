@@ -267,14 +267,12 @@ struct RandomPoints {
   unsigned seed;
   double least_speed, greatest_speed;  ///< [km/h]
   int steps;                           ///< a mesh cycle
+  double relative_step;                ///< of the differences
   double allowed_error;                ///< of elasticities, absolute
   int count;
 };
 
 void compare_random_points(const RandomPoints& points) {
-  // Larger steps pass kinks of the response at 6 of the 200 smooth points of a full run: at 4e-4
-  // their differences err by up to 4e-5, below 2e-4 they agree.
-  constexpr double kStep = 1e-4;
   std::mt19937_64 random(points.seed);
   int compared = 0, tried = 0, left_out = 0;
   double largest = 0;
@@ -289,8 +287,9 @@ void compare_random_points(const RandomPoints& points) {
     try {
       const PointResult point = solve_operating_point(place.scene, place.condition, options);
       if (point.contact_loss != points.lose_contact) continue;
-      const auto comparison = compare_elasticities(
-          {place.scene, target_of(place.scene, place.condition)}, point, points.steps, kStep);
+      const auto comparison =
+          compare_elasticities({place.scene, target_of(place.scene, place.condition)}, point,
+                               points.steps, points.relative_step);
       if (!comparison || comparison->one_sided) {
         ++left_out;
         continue;
@@ -308,12 +307,19 @@ void compare_random_points(const RandomPoints& points) {
   EXPECT_LE(left_out, std::max(2, points.count / 3));
 }
 
+// Larger steps pass kinks of the response at 6 of the 200 points of a full run: at 4e-4 their
+// differences err by up to 4e-5, below 2e-4 they agree.
 TEST(OrbitSensitivity, IsThatOfDifferencesAtSmoothPoints) {
-  compare_random_points({false, 11, 10, 160, 48, 1e-5, full_run() ? 200 : kShortRun ? 1 : 10});
+  compare_random_points({false, 11, 10, 160, 48, 1e-4, 1e-5,
+                         full_run()  ? 200
+                         : kShortRun ? 1
+                                     : 10});
 }
 
+// Steps of 1e-4 take an event past a node of the grid at some of the 100 points of a full run, and
+// their differences then err by up to 1.2e-3.
 TEST(OrbitSensitivity, IsThatOfDifferencesWhereFlanksPart) {
-  compare_random_points({true, 12, 20, 160, 96, 1e-3, full_run() ? 100 : kShortRun ? 1 : 6});
+  compare_random_points({true, 12, 20, 160, 192, 2e-5, 1e-3, full_run() ? 100 : kShortRun ? 1 : 6});
 }
 
 // Where friction decides most of the response: half of the mesh's resonance, coast, and the options
@@ -444,7 +450,8 @@ TEST(SweepSensitivities, AreThoseOfThePointsOnTheBranchThatIsFollowed) {
       for (int f = 0; f < kOrbitFigures; ++f) {
         const auto figure = static_cast<OrbitFigure>(f);
         EXPECT_NEAR(own.sensitivities->elasticity(own.sensitivities->parameters[i], figure),
-                    each.result->sensitivities->elasticity(parameters[i], figure), 1e-7)
+                    each.result->sensitivities->elasticity(parameters[i], figure),
+                    options.point.tolerance)
             << parameters[i].parameter << " at " << speed;
       }
     }

@@ -33,7 +33,6 @@ struct RestServer {
   FuzzedServer server;
   CallDispatcher dispatcher{server.application(), {.call = kCallLimit, .stream = kCallLimit}};
   RestHandler handler{dispatcher};
-  ~RestServer() { handler.shut_down_streams(); }
 };
 
 std::unique_ptr<RestServer>& rest_server() {

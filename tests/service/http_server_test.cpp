@@ -36,6 +36,22 @@ HttpResponse page(std::string text) {
   return out;
 }
 
+/// A body of one part, the last one.
+class LastPart : public HttpStream {
+ public:
+  void start(std::shared_ptr<HttpStreamWriter> writer) override {
+    writer->finish(std::string(kLongPage, 'x'));
+  }
+  void written(bool) override {}
+  void hang_up() override {}
+};
+
+HttpResponse streamed_page() {
+  HttpResponse out = page("");
+  out.stream = std::make_shared<LastPart>();
+  return out;
+}
+
 class HttpServerTest : public testing::Test {
  protected:
   HttpServerTest() { accept_owner(app_); }
@@ -45,6 +61,7 @@ class HttpServerTest : public testing::Test {
         : dispatcher(app),
           handler(dispatcher,
                   {{"/hello", {[](const HttpRequest&) { return page("hello"); }, true}},
+                   {"/streamed", {[](const HttpRequest&) { return streamed_page(); }, true}},
                    {"/long",
                     {[](const HttpRequest&) { return page(std::string(kLongPage, 'x')); }, true}}}),
           server(handler, {"127.0.0.1", 0, ""}, limits) {}
@@ -357,6 +374,22 @@ TEST_F(HttpServerTest, AClientThatDoesNotReadItsAnswerIsClosedAtTheWriteLimit) {
   const auto patient = serve();
   HttpConnection reader(patient->port());
   reader.send(get("/long", "Connection: close\r\n"));
+  EXPECT_GT(reader.read_all().size(), kLongPage);
+}
+
+TEST_F(HttpServerTest, AClientThatDoesNotReadTheEndOfAStreamIsClosedAtTheWriteLimit) {
+  HttpLimits limits;
+  limits.write_time = milliseconds(300);
+  const auto served = serve(limits);
+  HttpConnection slow(served->port());
+  slow.send(get("/streamed"));
+  EXPECT_THAT(slow.read_until("\r\n\r\n"), StartsWith("HTTP/1.1 200"));
+  std::this_thread::sleep_for(milliseconds(800));
+  EXPECT_LT(slow.read_all().size(), kLongPage) << "cut off";
+  EXPECT_TRUE(slow.is_closed());
+  const auto patient = serve();
+  HttpConnection reader(patient->port());
+  reader.send(get("/streamed"));
   EXPECT_GT(reader.read_all().size(), kLongPage);
 }
 

@@ -94,8 +94,8 @@ TEST(LiveStreams, WakesForAStreamWhoseTimeComesBeforeThatOfTheOthers) {
 
 TEST(LiveStreams, AStreamThatWasRemovedIsNotLookedAt) {
   LiveStreams streams(2);
-  const auto gone = std::make_shared<PausingStream>(std::vector{milliseconds(50)});
-  const auto other = std::make_shared<PausingStream>(std::vector{milliseconds(100)});
+  const auto gone = std::make_shared<PausingStream>(std::vector{milliseconds(1000)});
+  const auto other = std::make_shared<PausingStream>(std::vector{milliseconds(1100)});
   for (const auto& each : {gone, other}) {
     ASSERT_FALSE(streams.add(each));
     streams.follow_clock(*each);

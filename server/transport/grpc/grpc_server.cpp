@@ -59,7 +59,8 @@ std::shared_ptr<grpc::ServerCredentials> tls_credentials(const TlsFiles& files) 
 
 GrpcServer::GrpcServer(CallDispatcher& dispatcher, const std::vector<ListenAddress>& addresses,
                        const TlsFiles& tls)
-    : live_(kMaximumOpenStreams), services_(grpc_services(dispatcher, live_)) {
+    : live_(std::make_shared<LiveStreams>(kMaximumOpenStreams)),
+      services_(grpc_services(dispatcher, live_)) {
   for (const ListenAddress& each : addresses) {
     require_tls(each, tls);
     acceptors_.emplace_back(each);
@@ -125,7 +126,7 @@ void GrpcServer::shutdown() {
   for (Acceptor& each : acceptors_) each.stop();
   set_serving(false);
   open_calls_.reset();
-  live_.shut_down();
+  live_->shut_down();
   server_->Shutdown(std::chrono::system_clock::now() + kShutdownGrace);
   server_->Wait();
   server_.reset();

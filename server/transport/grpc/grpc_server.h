@@ -45,7 +45,7 @@ class GrpcServer {
  private:
   std::atomic<bool> is_serving_ = false;
   std::deque<Acceptor> acceptors_;
-  LiveStreams live_;
+  const std::shared_ptr<LiveStreams> live_;
   std::vector<std::unique_ptr<grpc::Service>> services_;
   UnknownMethods unknown_methods_;
   std::unique_ptr<grpc::Server> server_;

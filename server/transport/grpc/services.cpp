@@ -92,16 +92,17 @@ Credentials credentials_of(const Context& context, const std::string& peer) {
   return out;
 }
 
-std::vector<std::unique_ptr<grpc::Service>> grpc_services(CallDispatcher& dispatcher,
-                                                          LiveStreams& live) {
+std::vector<std::unique_ptr<grpc::Service>> grpc_services(
+    CallDispatcher& dispatcher, const std::shared_ptr<LiveStreams>& live) {
   std::map<const google::protobuf::ServiceDescriptor*, std::unique_ptr<ContractService>> services;
   for (const Method& method : dispatcher.methods()) {
     auto& service = services[method.descriptor->service()];
     if (!service) service = std::make_unique<ContractService>();
     if (method.open) {
-      service->add_stream(*method.descriptor, [&](Context* context, const Bytes* request) {
-        return StreamReactor::start(dispatcher, live, method, *context, *request);
-      });
+      service->add_stream(
+          *method.descriptor, [&dispatcher, &method, live](Context* context, const Bytes* request) {
+            return StreamReactor::start(dispatcher, live, method, *context, *request);
+          });
     } else {
       service->add_unary(*method.descriptor, [&](Context* context, const Bytes* request,
                                                  Bytes* response) {

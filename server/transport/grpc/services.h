@@ -10,9 +10,9 @@
 
 namespace tribodyn::server {
 
-/// Returns gRPC services with all methods of the method table. The dispatcher answers their calls.
-/// Both arguments must outlive the services.
+/// Returns gRPC services with all methods of the method table. The dispatcher, which must outlive
+/// the services, answers their calls; `live` has their streams.
 std::vector<std::unique_ptr<grpc::Service>> grpc_services(CallDispatcher& dispatcher,
-                                                          LiveStreams& live);
+                                                          const std::shared_ptr<LiveStreams>& live);
 
 }  // namespace tribodyn::server

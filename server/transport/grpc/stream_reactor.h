@@ -27,11 +27,12 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
                             public LiveStream,
                             public std::enable_shared_from_this<StreamReactor> {
  public:
-  StreamReactor(CallDispatcher& dispatcher, LiveStreams& live, const Method& its_method,
-                grpc::CallbackServerContext& its_context, const grpc::ByteBuffer& request)
+  StreamReactor(CallDispatcher& dispatcher, std::shared_ptr<LiveStreams> live,
+                const Method& its_method, grpc::CallbackServerContext& its_context,
+                const grpc::ByteBuffer& request)
       : GrpcCall(its_method, its_context, request, dispatcher.limits().stream),
         dispatcher_(dispatcher),
-        live_(live),
+        live_(std::move(live)),
         machine_(*this, *its_method.response, dispatcher.limits().unread),
         context_(&its_context) {}
 
@@ -39,10 +40,12 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   /// stream lasts until the deadline of the call, and one write as long as the dispatcher's limit
   /// says.
   static grpc::ServerWriteReactor<grpc::ByteBuffer>* start(CallDispatcher& dispatcher,
-                                                           LiveStreams& live, const Method& method,
+                                                           std::shared_ptr<LiveStreams> live,
+                                                           const Method& method,
                                                            grpc::CallbackServerContext& context,
                                                            const grpc::ByteBuffer& request) {
-    auto reactor = std::make_shared<StreamReactor>(dispatcher, live, method, context, request);
+    auto reactor =
+        std::make_shared<StreamReactor>(dispatcher, std::move(live), method, context, request);
     reactor->self_ = reactor;
     dispatcher.open(*reactor);
     return reactor.get();
@@ -53,10 +56,10 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
     is_counted_ = !outcome.ok();
     if (!outcome.ok()) return machine_.refuse(outcome.error());
     const auto self = shared_from_this();
-    if (const auto refused = live_.add(self)) return machine_.refuse(*refused);
+    if (const auto refused = live_->add(self)) return machine_.refuse(*refused);
     outcome.message()->observe(std::shared_ptr<Observer>(self, &machine_));
     machine_.open(std::move(outcome.message()), context.limits.deadline);
-    live_.follow_clock(*this);
+    live_->follow_clock(*this);
   }
 
   void shut_down(const google::rpc::Status& status) override { machine_.shut_down(status); }
@@ -77,7 +80,7 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
       const std::lock_guard lock(context_mutex_);
       context_ = nullptr;
     }
-    live_.remove(this);
+    live_->remove(this);
     const auto last = std::move(self_);  // may destroy this object on leaving
   }
 
@@ -110,7 +113,8 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   }
 
   CallDispatcher& dispatcher_;
-  LiveStreams& live_;
+  // The thread that opens the stream may use it when the server is gone.
+  const std::shared_ptr<LiveStreams> live_;
   StreamMachine machine_;
   // Recursive: TryCancel may call OnDone before it returns.
   std::recursive_mutex context_mutex_;

@@ -141,6 +141,7 @@ bool HttpServer::Connections::Session::write_part(std::string part, bool is_last
     }
     if (is_last) frame_[1] += "0\r\n\r\n";
   }
+  if (is_last) stream_.expires_after(all_.limits_.write_time);
   const std::array<asio::const_buffer, 3> buffers = {asio::buffer(frame_[0]), asio::buffer(part_),
                                                      asio::buffer(frame_[1])};
   asio::async_write(stream_, buffers,
@@ -179,7 +180,7 @@ void HttpServer::Connections::Session::begin_stream(const HttpResponse& response
                     [self = shared_from_this()](Error failure, std::size_t) {
                       self->is_writing_ = false;
                       if (failure) return self->drop();
-                      self->stream_.expires_never();  // the stream limits the time of a part
+                      self->stream_.expires_never();  // the body's maker limits the time of a part
                       self->drop_input();
                       self->start_body();
                     });

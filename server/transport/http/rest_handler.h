@@ -46,6 +46,9 @@ class RestHandler {
   /// `dispatcher` must outlive the object. Throws std::logic_error as HttpRoutes does.
   explicit RestHandler(CallDispatcher& dispatcher, std::map<std::string, Page> pages = {},
                        const RestLimits& limits = {}, const RestDashboard& dashboard = {});
+  ~RestHandler() { shut_down_streams(); }
+  RestHandler(const RestHandler&) = delete;
+  RestHandler& operator=(const RestHandler&) = delete;
 
   /// Called once, on any thread.
   using Reply = std::function<void(HttpResponse)>;
