@@ -45,14 +45,14 @@ inline constexpr int kStepUnknowns = 8;
 
 /// Takes one classical Runge-Kutta step from every start of `response`: lane s is step s.
 ///
-/// | columns | row | in lane s | unit |
-/// |---|---|---|---|
-/// | response.start | kTime | not read | |
-/// | response.start | i = 1 ... 7 | state i at the start of the step | of MarchComponent |
-/// | end | kTime | duration of the step | s |
-/// | end | i = 1 ... 7 | state i at the end of the step | of MarchComponent |
-/// | derivatives | 8 i + j, j = 0 ... 6 | d(row i of end)/d(state j + 1 at the start) | end's over
-/// state's | | derivatives | 8 i + 7 | d(row i of end)/d(unknown torque) | end's over N m |
+/// | columns | row | in lane s, in units of MarchComponent |
+/// |---|---|---|
+/// | response.start | kTime | not read |
+/// | response.start | i = 1 ... 7 | state i at the start of the step |
+/// | end | kTime | duration of the step |
+/// | end | i = 1 ... 7 | state i at the end of the step |
+/// | derivatives | 8 i + j, j = 0 ... 6 | d(row i of end)/d(state j + 1 at the start) |
+/// | derivatives | 8 i + 7 | d(row i of end)/d(unknown torque) |
 ///
 /// `derivatives` may be null: they are then not computed. Returns false beyond the reach of the
 /// grid's series, or if a number is not finite.

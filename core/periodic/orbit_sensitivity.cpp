@@ -35,7 +35,7 @@ struct DifferentiatedInstant {
 
 class OrbitDifferentiator {
  public:
-  /// The multiplier does without the integrals and without what moved events do to their steps.
+  /// The multiplier needs neither the integrals nor what an event's shift does to the steps beside.
   enum class Wanted { kAll, kMultiplier };
 
   OrbitDifferentiator(const PeriodicProblem& problem, const PeriodicOrbit& orbit, Wanted wanted)
@@ -207,11 +207,13 @@ class OrbitDifferentiator {
     return out;
   }
 
-  /// The middle and the end of a piece, or displacements of the two.
+  /// Time and states at the middle and the end of a piece, or their displacements.
+  using Rates = std::array<double, kRates>;
   struct MiddleAndEnd {
-    ByState middle{}, end{};
+    Rates middle{}, end{};
   };
-  /// What displacements in the piece at hand do, in each group, at a fixed phase.
+  /// What displacements of middle and end of the piece at hand do to the quantities of each group,
+  /// at fixed phases and with the friction arms held.
   std::array<AdjointRow, kGroups> weighed(const MiddleAndEnd& moved) const {
     std::array<AdjointRow, kGroups> out{};
     for (int i = 0; i < kRates; ++i) {
@@ -224,8 +226,8 @@ class OrbitDifferentiator {
   }
 
   /// Adds what the change of the event at the end of a piece does through the state there: there
-  /// the transmission error is that of touching flanks, or the mesh force is 0. `off_motion`: how
-  /// far the step's end leaves the motion, for each unit of the event's phase.
+  /// the transmission error is that of touching flanks, or the mesh force is 0. `off_motion`: as
+  /// off_motion_by() says, by the phase of the event.
   void pass_event(std::size_t index, const MiddleAndEnd& off_motion) {
     const OrbitPiece& p = orbit_.pieces[index];
     const bool touch = p.regime.side != orbit_.pieces[index + 1].regime.side;
@@ -319,13 +321,12 @@ class OrbitDifferentiator {
   };
 
   /// Sets along_ at the parts of a piece that move with an event at its start or end, where they
-  /// are under load: by central differences over a thousandth of the piece to either side, whose
-  /// relative error is about 1e-6. Returns false if a contact is refused.
+  /// are under load: by central differences over a thousandth of a step of the grid to either side,
+  /// or over what changes the load by a thousandth, whose relative error is about 1e-6. Returns
+  /// false if a contact is refused.
   bool follow_motion(std::size_t index, bool begins, bool ends) {
     const OrbitPiece& p = orbit_.pieces[index];
-    const double step = 1e-3 * p.length;
     const double cycle = std::floor(p.phase + 1e-9);
-    const int interval = system_.mesh().interval_at(p.phase + 0.5 * p.length - cycle);
     ContactTally tally;
     ContactSolver contacts(batch_, tally);
     for (int part = 0; part < 3; ++part) {
@@ -333,12 +334,15 @@ class OrbitDifferentiator {
       const bool moves = part == 0 ? begins : part == 2 ? ends : begins || ends;
       const ContactsAt& unmoved = contacts_.at(index, part);
       if (!moves || !has_load(unmoved)) continue;
+      const double part_phase = p.phase + 0.5 * part * p.length - cycle;
+      const int interval = system_.mesh().interval_at(part_phase);
+      const double step =
+          std::min(small_step(), 1e-3 * unmoved.load / std::abs(force_slope(index, part)));
       for (const double shift : {-step, step}) {
         MarchState y = state_of(p, part);
         for (int i = 0; i < kRates; ++i) y[i] += shift * part_[part].slopes.rate[i];
         Instant at;
-        const double phase = p.phase + 0.5 * part * p.length + shift - cycle;
-        if (system_.evaluate(phase, interval, p.regime, y.data(), contacts, at) !=
+        if (system_.evaluate(part_phase + shift, interval, p.regime, y.data(), contacts, at) !=
             ContactStatus::kOk) {
           return false;
         }
@@ -352,10 +356,13 @@ class OrbitDifferentiator {
     }
     return true;
   }
+  /// Of central differences over phase [cycles]. Not a share of the piece, which may be so short
+  /// that rounding would decide.
+  double small_step() const { return 1e-3 / grid_.steps(); }
   bool has_load(const ContactsAt& at) const { return at.load > kNoLoad * light_load_; }
 
-  /// Takes the step of a piece anew whose start and end have moved by so much phase: from where the
-  /// motion has taken its start, with the friction arms there.
+  /// Takes the step of a piece again after its start and end have moved by these phases [cycles].
+  /// The start state and the friction arms change as they do along the motion.
   MiddleAndEnd moved_piece(const OrbitPiece& p, double start_shift, double end_shift) {
     const double length = p.length + end_shift - start_shift;
     FrictionArms arms[3];
@@ -368,9 +375,9 @@ class OrbitDifferentiator {
       arms[part].gear += shift * along_[part].arms.gear;
       phase[part] = system_.at_phase(at + shift - std::floor(at + shift));
     }
-    ByState start{}, rate{}, first_rate{};
+    Rates start{}, rate{}, first_rate{};
     // Friction follows the force as it does in the slopes of the piece: no kink where F is 0.
-    const auto set_rate = [&](int part, const StageSlopes& slopes, const ByState& y) {
+    const auto set_rate = [&](int part, const StageSlopes& slopes, const Rates& y) {
       Mechanics at;
       system_.mechanics(phase[part], p.regime, y.data(), at);
       const double load = slopes.load > 0 ? p.regime.side * at.mesh_force : 0;
@@ -382,23 +389,23 @@ class OrbitDifferentiator {
     MiddleAndEnd out;
     out.end = start;
     for (int n = 0; n < 4; ++n) {
-      ByState stage = start;
+      Rates stage = start;
       for (int i = 0; i < kRates; ++i) stage[i] += kRungeKuttaNode[n] * length * rate[i];
       set_rate(n == 0 ? 0 : n == 3 ? 2 : 1, n == 0 ? part_[0].slopes : stage_[n].slopes, stage);
       if (n == 0) first_rate = rate;
       for (int i = 0; i < kRates; ++i) out.end[i] += kRungeKuttaWeight[n] * length * rate[i];
     }
-    set_rate(2, part_[2].slopes, out.end);
+    // The middle by the rate of the last stage: Rk4WithEvents::middle().
     for (int i = 0; i < kRates; ++i) {
       out.middle[i] = 0.5 * (start[i] + out.end[i]) + length / 8 * (first_rate[i] - rate[i]);
     }
     return out;
   }
 
-  /// By how much middle and end of a piece leave the motion, for each unit of the phase of its
-  /// start (1, 0) or of its end (0, 1): along the motion a step errs by what its length decides.
+  /// Derivatives of a step's middle and end by the phase of its start (1, 0) or of its end (0, 1),
+  /// less those of the motion. They are not 0, because the error of a step depends on its length.
   MiddleAndEnd off_motion_by(const OrbitPiece& p, int of_start, int of_end) {
-    const double step = 1e-3 * p.length;
+    const double step = small_step();
     MiddleAndEnd out = moved_piece(p, of_start * step, of_end * step);
     const MiddleAndEnd other = moved_piece(p, -of_start * step, -of_end * step);
     for (int i = 0; i < kRates; ++i) {

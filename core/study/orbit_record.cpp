@@ -31,7 +31,7 @@ void record_orbit(const GearPairSystem& system, const PeriodicOrbit& orbit,
   // The first components are the state itself, at the end.
   const MarchState& end = orbit.pieces.back().end;
   for (int i = kTime; i <= kWheelSpeed; ++i) record.integrals[i] = end[i];
-  // In a period the shafts turn with the teeth: no quadrature.
+  // In a period the shafts turn as far as the teeth say: exact, without quadrature.
   record.integrals[kPinionShaftAngle] = orbit.period * system.cycle_angle();
   record.integrals[kWheelAngle] = record.integrals[kPinionShaftAngle] *
                                   system.mesh().pinion_teeth() / system.mesh().gear_teeth();

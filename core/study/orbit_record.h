@@ -6,8 +6,8 @@
 
 namespace tribodyn {
 
-/// Records the solved pieces of a periodic orbit: integrals by Simpson's rule over each piece,
-/// extremes, openings of the gap.
+/// Records the solved pieces of a periodic orbit: integrals by Simpson's rule over each piece
+/// (turns of the shafts as the teeth say), extremes, openings of the gap.
 void record_orbit(const GearPairSystem& system, const PeriodicOrbit& orbit,
                   const SolvedPieces& solved, ResponseRecord& record);
 

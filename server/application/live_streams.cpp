@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 #include "server/application/errors.h"
@@ -52,8 +53,14 @@ void LiveStreams::remove(const LiveStream* stream) {
   if (--of_peer->second == 0) of_peers_.erase(of_peer);
 }
 
-void LiveStreams::follow_clock(LiveStream& stream) {
+void LiveStreams::follow_clock(const LiveStream& stream) {
+  set_next_look(stream, Clock::now() + kClockInterval);
+}
+
+void LiveStreams::look(LiveStream& stream) try {
   set_next_look(stream, stream.look_at_clock().value_or(Clock::time_point::max()));
+} catch (const std::exception& failure) {  // no memory for a status: looked at again
+  spdlog::error("event=internal_error cause=\"time limit of a stream: {}\"", failure.what());
 }
 
 void LiveStreams::set_next_look(const LiveStream& stream, Clock::time_point time) {
@@ -75,27 +82,28 @@ void LiveStreams::run_clock() {
       changed_.wait_until(lock, next_look_);
       continue;
     }
+    std::vector<std::shared_ptr<LiveStream>> due;
     try {
-      auto due = take_due(Clock::now());
-      lock.unlock();
-      for (const auto& stream : due) follow_clock(*stream);
-      due.clear();                             // may destroy streams: without the lock
-    } catch (const std::exception& failure) {  // no memory for a list or a status
-      spdlog::error("event=internal_error cause=\"time limits of streams: {}\"", failure.what());
+      due = take_due(Clock::now());
+    } catch (const std::bad_alloc&) {
+      due.clear();  // tried again after the interval
     }
-    if (!lock.owns_lock()) lock.lock();
+    lock.unlock();
+    for (const auto& stream : due) look(*stream);
+    due.clear();  // may destroy streams: without the lock
+    lock.lock();
     changed_.wait_for(lock, kClockInterval, [this] { return closed_; });
   }
 }
 
 std::vector<std::shared_ptr<LiveStream>> LiveStreams::take_due(Clock::time_point now) {
   std::vector<std::shared_ptr<LiveStream>> due;
-  due.reserve(streams_.size());
+  due.reserve(streams_.size());  // throws, if at all, before any next look has changed
   next_look_ = Clock::time_point::max();
   for (auto& [stream, entry] : streams_) {
     if (entry.next_look <= now) {
       due.push_back(entry.stream);
-      entry.next_look = now + kClockInterval;  // until follow_clock() has set it
+      entry.next_look = now + kClockInterval;  // until look() has set it
     }
     next_look_ = std::min(next_look_, entry.next_look);
   }

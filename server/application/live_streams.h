@@ -47,10 +47,10 @@ class LiveStreams {
   std::optional<google::rpc::Status> add(const std::shared_ptr<LiveStream>& stream,
                                          const std::string& peer = {});
   void remove(const LiveStream* stream);
-  /// Called once for a stream that was added. Calls its look_at_clock() now, and from then on, on
-  /// the thread of this object, at the times that look_at_clock() returned or up to kClockInterval
-  /// after them.
-  void follow_clock(LiveStream& stream);
+  /// From now on the thread of this object calls look_at_clock() of a stream that was added: first
+  /// after kClockInterval, then at the time that look_at_clock() returned or up to kClockInterval
+  /// later.
+  void follow_clock(const LiveStream& stream);
   static constexpr auto kClockInterval = std::chrono::milliseconds(100);
   /// Ends all soon, lets none open any more, and ends the thread: time limits hold no longer.
   void shut_down();
@@ -62,6 +62,8 @@ class LiveStreams {
     Clock::time_point next_look = Clock::time_point::max();
   };
   void run_clock();
+  /// Looks at the clock of a stream, and sets its next look.
+  void look(LiveStream& stream);
   /// Returns the streams whose time has come, and sets their next look to one interval from `now`.
   /// Requires the lock.
   std::vector<std::shared_ptr<LiveStream>> take_due(Clock::time_point now);

@@ -56,8 +56,8 @@ class StreamMachine : public Observer {
 
   /// Pulls from the source soon.
   void changed() override;
-  /// Ends the stream once no write is under way. The first of several statuses counts. It replaces
-  /// that of a shut_down() which still waits for the source.
+  /// Ends the stream once no write is under way. The first status of several calls counts,
+  /// also over that of a shut_down() which still waits for the source.
   void close(const google::rpc::Status& status);
   /// Ends a stream that follows changes as soon as its source has no message, or by the first step
   /// after kLastChanges, and any other stream once no write is under way.

@@ -102,7 +102,7 @@ TEST(LiveStreams, AStreamThatWasRemovedIsNotLookedAt) {
   }
   streams.remove(gone.get());
   EXPECT_TRUE(happens([&] { return other->looks() == 2; }));
-  EXPECT_EQ(gone->looks(), 1);
+  EXPECT_EQ(gone->looks(), 0);
   EXPECT_EQ(gone.use_count(), 1);
 }
 

@@ -11,7 +11,7 @@
 namespace tribodyn::server {
 
 /// Returns gRPC services with all methods of the method table. The dispatcher, which must outlive
-/// the services, answers their calls; `live` has their streams.
+/// the services, answers their calls; `live` keeps their open streams.
 std::vector<std::unique_ptr<grpc::Service>> grpc_services(CallDispatcher& dispatcher,
                                                           const std::shared_ptr<LiveStreams>& live);
 

@@ -36,7 +36,7 @@ class HttpStreamWriter {
   /// that.
   virtual void write(std::string part) = 0;
   /// Writes the last part and ends the response well. The connection limits the time that this
-  /// takes; the caller limits that of the other parts, by cut_off().
+  /// takes; the HttpStream limits that of the other parts, by cut_off().
   virtual void finish(std::string part) = 0;
   /// Breaks the response off, so that the client notices that the end is missing.
   virtual void cut_off() = 0;

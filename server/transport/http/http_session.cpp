@@ -180,7 +180,7 @@ void HttpServer::Connections::Session::begin_stream(const HttpResponse& response
                     [self = shared_from_this()](Error failure, std::size_t) {
                       self->is_writing_ = false;
                       if (failure) return self->drop();
-                      self->stream_.expires_never();  // the body's maker limits the time of a part
+                      self->stream_.expires_never();  // the HttpStream limits the time of a part
                       self->drop_input();
                       self->start_body();
                     });

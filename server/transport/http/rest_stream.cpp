@@ -140,13 +140,14 @@ class RestStream final : public RestCall<StreamCall>,
   void finish(const google::rpc::Status& status) override {
     const auto self = shared_from_this();
     dispatcher_.ended(*this, status);
-    live_->remove(this);
-    if (writer_ == nullptr) return;
-    if (auto last = end_text(status)) {
-      writer_->finish(*std::move(last));
-    } else {
-      writer_->cut_off();
+    if (writer_ != nullptr) {
+      if (auto last = end_text(status)) {
+        writer_->finish(*std::move(last));
+      } else {
+        writer_->cut_off();
+      }
     }
+    live_->remove(this);  // last: until then a failure leaves the time limits in force
   }
   std::optional<std::string> end_text(const google::rpc::Status& status) {
     try {
