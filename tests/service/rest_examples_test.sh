@@ -22,6 +22,7 @@ run() {
   bash -euo pipefail before
   read -r -a start <<<"$(sed -nE "/^tribodynd/s/:$4(.*) &$/:0\\1/p" commands)"
   [ "${start[0]}" = tribodynd ] || { echo "no command of list $1 starts tribodynd"; exit 1; }
+  : >log  # read below, perhaps before the shell of the server has opened it
   "$tribodynd" "${start[@]:1}" --listen 127.0.0.1:0 >log 2>&1 &
   server=$!
   port=
