@@ -12,13 +12,12 @@
 namespace tribodyn::server {
 namespace {
 
-constexpr double kRetrySeconds = 10;
-
 google::rpc::Status too_many(std::size_t maximum, const char* whose) {
+  constexpr double kRetryLater = 10;  // [s]; most streams last longer, so somebody has to end one
   return exhausted(v1::ERROR_REASON_TOO_MANY_STREAMS,
                    fmt::format("{} streams{} are open, which is the limit; try again in {} s",
-                               maximum, whose, kRetrySeconds),
-                   kRetrySeconds);
+                               maximum, whose, kRetryLater),
+                   kRetryLater);
 }
 
 }  // namespace
