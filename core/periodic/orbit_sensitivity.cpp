@@ -35,7 +35,8 @@ struct DifferentiatedInstant {
 
 class OrbitDifferentiator {
  public:
-  /// The multiplier needs neither the integrals nor what an event's shift does to the steps beside.
+  /// The multiplier needs neither the integrals nor the effect of a shifted event on the steps
+  /// beside it.
   enum class Wanted { kAll, kMultiplier };
 
   OrbitDifferentiator(const PeriodicProblem& problem, const PeriodicOrbit& orbit, Wanted wanted)
@@ -298,7 +299,7 @@ class OrbitDifferentiator {
     return system_.input_speed(orbit_.torques, pinion_shaft_speed, wheel_speed);
   }
 
-  /// What is integrated over phase, at an instant.
+  /// The integrands over phase of the integrals of add_integrals(), at an instant.
   using Integrands = std::array<double, kIntegrals>;
   Integrands integrands(const MarchState& y, const Instant& at) const {
     Integrands out{};

@@ -42,7 +42,7 @@ std::optional<google::rpc::Status> LiveStreams::add(const std::shared_ptr<LiveSt
 }
 
 void LiveStreams::remove(const LiveStream* stream) {
-  Entry last;  // destroyed after the lock is gone
+  Entry last;  // declared before the lock, so that it is destroyed after the unlock
   const std::lock_guard lock(mutex_);
   const auto found = streams_.find(stream);
   if (found == streams_.end()) return;
@@ -85,7 +85,7 @@ void LiveStreams::run_clock() {
     try {
       due = take_due(Clock::now());
     } catch (const std::bad_alloc&) {
-      due.clear();  // tried again after the interval
+      due.clear();  // nothing has changed; the next round tries again
     }
     lock.unlock();
     for (const auto& stream : due) look(*stream);

@@ -62,9 +62,9 @@ class LiveStreams {
     Clock::time_point next_look = Clock::time_point::max();
   };
   void run_clock();
-  /// Looks at the clock of a stream, and sets its next look.
+  /// Calls look_at_clock() of a stream and stores the time of the next call.
   void look(LiveStream& stream);
-  /// Returns the streams whose time has come, and sets their next look to one interval from `now`.
+  /// Returns the streams whose next call is due, and sets that call to one interval from `now`.
   /// Requires the lock.
   std::vector<std::shared_ptr<LiveStream>> take_due(Clock::time_point now);
   void set_next_look(const LiveStream& stream, Clock::time_point time);

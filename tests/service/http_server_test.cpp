@@ -361,36 +361,22 @@ TEST_F(HttpServerTest, ACallWhoseClientHangsUpIsCancelled) {
   EXPECT_THAT(other.read_all(), Not(HasSubstr("many-1"))) << "nothing is written";
 }
 
-TEST_F(HttpServerTest, AClientThatDoesNotReadItsAnswerIsClosedAtTheWriteLimit) {
+TEST_F(HttpServerTest, AClientThatDoesNotReadAnAnswerOrTheEndOfAStreamIsClosedAtTheWriteLimit) {
   HttpLimits limits;
   limits.write_time = milliseconds(300);
-  const auto served = serve(limits);
-  HttpConnection slow(served->port());
-  slow.send(get("/long"));
-  EXPECT_THAT(slow.read_until("\r\n\r\n"), StartsWith("HTTP/1.1 200"));
-  std::this_thread::sleep_for(milliseconds(800));
-  EXPECT_LT(slow.read_all().size(), kLongPage) << "cut off";
-  EXPECT_TRUE(slow.is_closed());
-  const auto patient = serve();
-  HttpConnection reader(patient->port());
-  reader.send(get("/long", "Connection: close\r\n"));
-  EXPECT_GT(reader.read_all().size(), kLongPage);
-}
-
-TEST_F(HttpServerTest, AClientThatDoesNotReadTheEndOfAStreamIsClosedAtTheWriteLimit) {
-  HttpLimits limits;
-  limits.write_time = milliseconds(300);
-  const auto served = serve(limits);
-  HttpConnection slow(served->port());
-  slow.send(get("/streamed"));
-  EXPECT_THAT(slow.read_until("\r\n\r\n"), StartsWith("HTTP/1.1 200"));
-  std::this_thread::sleep_for(milliseconds(800));
-  EXPECT_LT(slow.read_all().size(), kLongPage) << "cut off";
-  EXPECT_TRUE(slow.is_closed());
-  const auto patient = serve();
-  HttpConnection reader(patient->port());
-  reader.send(get("/streamed"));
-  EXPECT_GT(reader.read_all().size(), kLongPage);
+  for (const char* page : {"/long", "/streamed"}) {
+    const auto served = serve(limits);
+    HttpConnection slow(served->port());
+    slow.send(get(page));
+    EXPECT_THAT(slow.read_until("\r\n\r\n"), StartsWith("HTTP/1.1 200")) << page;
+    std::this_thread::sleep_for(milliseconds(800));
+    EXPECT_LT(slow.read_all().size(), kLongPage) << page << " is not cut off";
+    EXPECT_TRUE(slow.is_closed()) << page;
+    const auto patient = serve();
+    HttpConnection reader(patient->port());
+    reader.send(get(page, "Connection: close\r\n"));
+    EXPECT_GT(reader.read_all().size(), kLongPage) << page;
+  }
 }
 
 TEST_F(HttpServerTest, TheServerEndsWhileClientsAreConnectedAndCallsRun) {

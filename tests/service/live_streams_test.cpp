@@ -19,7 +19,8 @@ namespace {
 using std::chrono::milliseconds;
 using Clock = LiveStreams::Clock;
 
-/// Asks to be looked at again after each of its pauses, and then never.
+/// Returns, from each call of look_at_clock(), the time after the next of its pauses; after the
+/// last pause nullopt.
 class PausingStream : public LiveStream {
  public:
   explicit PausingStream(std::vector<milliseconds> pauses = {}) : pauses_(std::move(pauses)) {}

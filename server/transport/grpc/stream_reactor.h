@@ -113,7 +113,7 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   }
 
   CallDispatcher& dispatcher_;
-  // The thread that opens the stream may use it when the server is gone.
+  // Shared: the thread that opens the stream may use the object after the server's destructor.
   const std::shared_ptr<LiveStreams> live_;
   StreamMachine machine_;
   // Recursive: TryCancel may call OnDone before it returns.
