@@ -59,6 +59,17 @@ RevisionRow revision_row(const std::string& project, const std::string& revision
   return out;
 }
 
+const std::string& RevisionNames::of(const SQLite::Column& revision) {
+  const auto [known, is_new] =
+      known_.try_emplace(revision.getInt64());  // NULL: 0, which no row has
+  if (is_new) {
+    Prepared query(db_, "SELECT name || '@' || revision FROM revision_names WHERE revision_id = ?",
+                   known->first);
+    if (query.executeStep()) known->second = relative_name(query.getColumn(0).getString());
+  }
+  return known->second;
+}
+
 bool is_taken(Connection& db, const std::string& name) {
   Prepared taken(db, "SELECT 1 FROM resources WHERE name = ?", name);
   return taken.executeStep();

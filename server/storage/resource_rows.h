@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,20 @@ struct RevisionRow {
 /// Returns the row of a relative name, e.g. "lubricants/paper-fluid-1@2"; one without a number if
 /// the name is empty.
 RevisionRow revision_row(const std::string& project, const std::string& revision);
+
+/// Names of revisions by their rows. Reads each row once: the simulations of a page have few
+/// revisions among them.
+class RevisionNames {
+ public:
+  explicit RevisionNames(Connection& db) : db_(db) {}
+  /// Returns the relative name, e.g. "lubricants/paper-fluid-1@2", of the revision in a column;
+  /// empty if the column is NULL.
+  const std::string& of(const SQLite::Column& revision);
+
+ private:
+  Connection& db_;
+  std::map<std::int64_t, std::string> known_;
+};
 
 /// Returns true if a resource, deleted or not, has this name.
 bool is_taken(Connection& db, const std::string& name);

@@ -43,8 +43,10 @@ Page<StoredSimulation> query_simulations(Connection& db, const SimulationQuery& 
   values.emplace_back(std::int64_t{query.limit + 1});
   const auto run = [&](SQLite::Statement& statement) {
     bind_values(statement, values);
-    return read_page<StoredSimulation>(statement, query.limit, query.byte_limit, kRequestColumn,
-                                       stored_simulation);
+    RevisionNames names(db);
+    return read_page<StoredSimulation>(
+        statement, query.limit, query.byte_limit, kRequestColumn,
+        [&](const SQLite::Statement& row) { return stored_simulation(row, names); });
   };
   Page<StoredSimulation> page;
   if (query.restrictions.empty()) {

@@ -14,11 +14,8 @@ namespace tribodyn::server {
 const char kSimulationColumns[] =
     "SELECT id, state, attempt, sequence, create_time, start_time, end_time, deadline_time, "
     "request, request_hash, is_forced, cache_hit, input_hash, error_reason, error_message, "
-    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = lubricant), "
-    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = gear_set), "
-    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = surface), "
-    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle), "
-    "request_id, pinned, client, cost_seconds, principal, scheduling_class, project, number "
+    "lubricant, gear_set, surface, vehicle, request_id, pinned, client, cost_seconds, principal, "
+    "scheduling_class, project, number "
     "FROM simulations ";
 
 namespace {
@@ -255,7 +252,7 @@ std::int64_t ledger_row(Connection& db, const std::string& body) {
   return row;
 }
 
-StoredSimulation stored_simulation(const SQLite::Statement& query) {
+StoredSimulation stored_simulation(const SQLite::Statement& query, RevisionNames& names) {
   StoredSimulation out;
   out.id = query.getColumn(0).getInt64();
   out.state = static_cast<StoredState>(query.getColumn(1).getInt());
@@ -272,10 +269,10 @@ StoredSimulation stored_simulation(const SQLite::Statement& query) {
   out.input_hash = query.getColumn(12).getString();
   out.error_reason = query.getColumn(13).getString();
   out.error_message = query.getColumn(14).getString();
-  out.revisions.lubricant = relative_name(query.getColumn(15).getString());
-  out.revisions.gear_set = relative_name(query.getColumn(16).getString());
-  out.revisions.surface = relative_name(query.getColumn(17).getString());
-  out.revisions.vehicle = relative_name(query.getColumn(18).getString());
+  out.revisions.lubricant = names.of(query.getColumn(15));
+  out.revisions.gear_set = names.of(query.getColumn(16));
+  out.revisions.surface = names.of(query.getColumn(17));
+  out.revisions.vehicle = names.of(query.getColumn(18));
   out.request_id = query.getColumn(19).getString();
   out.is_pinned = query.getColumn(20).getInt() != 0;
   out.client = query.getColumn(21).getString();
@@ -291,7 +288,9 @@ StoredSimulation stored_simulation(const SQLite::Statement& query) {
 template <class... Values>
 std::optional<StoredSimulation> find_simulation(Connection& db, const char* where,
                                                 const Values&... values) {
-  return Prepared(db, std::string(kSimulationColumns) + where, values...).first(stored_simulation);
+  RevisionNames names(db);
+  return Prepared(db, std::string(kSimulationColumns) + where, values...)
+      .first([&](const SQLite::Statement& row) { return stored_simulation(row, names); });
 }
 
 std::optional<StoredSimulation> query_simulation(Connection& db, std::int64_t id) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "server/storage/connection.h"
+#include "server/storage/resource_rows.h"
 #include "server/storage/stored_simulation.h"
 #include "server/storage/times.h"
 
@@ -27,7 +28,7 @@ std::int64_t ledger_row(Connection& db, const std::string& body);
 /// Columns of stored_simulation, to be followed by the rest of a SELECT over simulations.
 extern const char kSimulationColumns[];
 inline constexpr int kRequestColumn = 8;
-StoredSimulation stored_simulation(const SQLite::Statement& query);
+StoredSimulation stored_simulation(const SQLite::Statement& query, RevisionNames& names);
 
 std::optional<StoredSimulation> query_simulation(Connection& db, std::int64_t id);
 std::optional<StoredSimulation> query_numbered_simulation(Connection& db,
