@@ -48,10 +48,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tribodyn {
 
-void ContactSlopes::resize(std::size_t count) {
-  for (Columns* each : {&friction, &temperature}) each->resize(kContactSlopes, count);
-  film_ratio.resize(kFilmSlopes, count);
-  edge.resize(1, count);
+void ContactSlopes::resize_for_overwrite(std::size_t count) {
+  for (Columns* each : {&friction, &temperature}) each->resize_for_overwrite(kContactSlopes, count);
+  film_ratio.resize_for_overwrite(kFilmSlopes, count);
+  edge.resize_for_overwrite(1, count);
 }
 
 void differentiate_contacts(InstructionSet instruction_set, const ContactBlockTables& tables,

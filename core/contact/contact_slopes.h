@@ -44,7 +44,7 @@ struct ContactSlopes {
   Columns film_ratio;   ///< of lambda_s [-], kFilmSlopes rows: the others are 0
   Columns edge;         ///< one row: A_asp/A_EHL [-]; at 1 derivatives are those of one side
 
-  void resize(std::size_t count);
+  void resize_for_overwrite(std::size_t count);
 };
 
 /// Differentiates the first `count` contacts, which the vector code has solved with the same

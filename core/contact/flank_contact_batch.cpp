@@ -383,8 +383,8 @@ std::size_t FlankContactBatch::solve(const ContactGeometries& geometries, std::s
 
 void DifferentiatedContacts::clear(std::size_t room) {
   count_ = 0;
-  solved_.resize(kSolvedContactRows, room);
-  slopes_.resize(room);
+  solved_.resize_for_overwrite(kSolvedContactRows, room);
+  slopes_.resize_for_overwrite(room);
 }
 
 int DifferentiatedContacts::add(const ContactGeometries& geometries, std::size_t i,

@@ -33,24 +33,34 @@ namespace {
 enum { kInletLoading = kConditionSlopes, kInletModulus, kInletVariables };
 using InletNumber = Dual<Pack, kInletVariables>;
 
-/// What the contact follows from once the film is known that would carry all of the load.
+/// What the contact follows from once the film is known that would carry all of the load: first
+/// what decides how film and asperities share it, then the rest.
 enum SharedVariable {
   kSharedLoad,
   kSharedFilm,     // h_cen if the film carried all
   kSharedModulus,  // ln E', in the ellipse
   kSharedRmsHeight,
   kSharedLoadFactor,
-  kSharedAreaFactor,
+  kSharingVariables,
+  kSharedAreaFactor = kSharingVariables,
   kSharedSlide,
   kSharedConductance1,  // of 1 m2 whose ellipse is that at 1 N
   kSharedConductance2,
   kSharedOilConductivity,
   kSharedTribofilm,
   kSharedAsperityFriction,
-  kSharedUnknown,  // ln(W_EHL/W)
   kSharedVariables
 };
+/// The last variable is free for ln(W_EHL/W).
+using SharingNumber = Dual<Pack, kSharingVariables + 1>;
 using SharedNumber = Dual<Pack, kSharedVariables>;
+
+HWY_INLINE SharedNumber widened(const SharingNumber& x) {
+  SharedNumber out(0.0);
+  out.value = x.value;
+  for (int k = 0; k < kSharingVariables; ++k) out.slope[k] = x.slope[k];
+  return out;
+}
 
 /// By temperature, logarithm of the shear rate and the levels of the stress without pressure.
 using StressNumber = Dual<Pack, 2 + kStressLevels>;
@@ -130,10 +140,10 @@ HWY_INLINE PolynomialAndSlope asperity_polynomial(const std::array<double, kAspe
 }
 
 /// F_n of the film ratio l by its table: exp(-l^2/2) v^(n+1) P. `power`: v^(n+1).
-HWY_INLINE SharedNumber asperity_function(const ContactBlockTables& t,
-                                          const std::array<double, kAsperityTerms>& c, double order,
-                                          Pack gaussian, Pack v, Pack power, Mask some,
-                                          const SharedNumber& film_ratio) {
+HWY_INLINE SharingNumber asperity_function(const ContactBlockTables& t,
+                                           const std::array<double, kAsperityTerms>& c,
+                                           double order, Pack gaussian, Pack v, Pack power,
+                                           Mask some, const SharingNumber& film_ratio) {
   const PolynomialAndSlope p =
       asperity_polynomial(c, fused(v, t.asperity_scale, t.asperity_offset));
   const Pack value = where(some, gaussian * power * p.value);
@@ -146,71 +156,76 @@ HWY_INLINE SharedNumber asperity_function(const ContactBlockTables& t,
 HWY_NOINLINE void eval_shared_contact(const ContactBlockTables& t, const Columns& solved,
                                       SlopeStages& stages, std::size_t i) {
   const auto row = [&](int r) HWY_ATTR { return load_any(solved[r] + i); };
-  const auto variable = [](Pack value, int n) HWY_ATTR { return SharedNumber::variable(value, n); };
+  const auto variable = [](Pack value, int n)
+                            HWY_ATTR { return SharingNumber::variable(value, n); };
   const Pack load_all = row(kSolvedLoad);
-  const SharedNumber load = variable(load_all, kSharedLoad);
-  const SharedNumber film_under_all = variable(stages.film.value, kSharedFilm);
-  const SharedNumber log_modulus = variable(0, kSharedModulus);
-  const SharedNumber rms_height = variable(1 / t.inverse_roughness, kSharedRmsHeight);
-  const SharedNumber load_factor = variable(t.asperity_load_factor, kSharedLoadFactor);
-  const SharedNumber area_factor = variable(t.asperity_area_factor, kSharedAreaFactor);
+  const SharingNumber load = variable(load_all, kSharedLoad);
+  const SharingNumber film_under_all = variable(stages.film.value, kSharedFilm);
+  const SharingNumber log_modulus = variable(0, kSharedModulus);
+  const SharingNumber rms_height = variable(1 / t.inverse_roughness, kSharedRmsHeight);
+  const SharingNumber load_factor = variable(t.asperity_load_factor, kSharedLoadFactor);
   // A value at 1 N that grows with a power of E'.
   const auto unit = [&](Pack value, double power)
                         HWY_ATTR { return chained(value, power * value, log_modulus); };
-  const SharedNumber unit_area = unit(row(kSolvedUnitArea), -2.0 / 3);
+  const SharingNumber unit_area = unit(row(kSolvedUnitArea), -2.0 / 3);
 
-  const SharedNumber log_load = logarithm(load);
-  const SharedNumber ratio_all = film_under_all / rms_height;
+  const SharingNumber log_load = logarithm(load);
+  const SharingNumber ratio_all = film_under_all / rms_height;
   const Pack log_share = logarithm(row(kSolvedFilmLoad) / load_all);
   const Mask some = ratio_all.value < kAsperitiesVanish;  // asperities touch
   const Pack ratio = ratio_all.value * film_thinning(log_share),
              inside = least(ratio, kAsperityEnd);
   const Pack v = 1 / (inside + kAsperityShift), gaussian = exponential(-0.5 * square(inside));
   const Pack cube = square(v) * v;
-  const auto f5_2 = [&](const SharedNumber& film_ratio) HWY_ATTR {
+  const auto f5_2 = [&](const SharingNumber& film_ratio) HWY_ATTR {
     return asperity_function(t, t.f5_2, 2.5, gaussian, v, cube * root(v), some, film_ratio);
   };
-  const SharedNumber asperities = load_factor * unit_area * exponential((-1.0 / 3) * log_load);
-  const SharedNumber share =
-      root_with_slopes<kSharedVariables>(log_share, [&](const SharedNumber& r) HWY_ATTR {
+  const SharingNumber asperities = load_factor * unit_area * exponential((-1.0 / 3) * log_load);
+  const SharingNumber share =
+      root_with_slopes<kSharingVariables + 1>(log_share, [&](const SharingNumber& r) HWY_ATTR {
         return exponential(r) +
                asperities * exponential((2.0 / 3) * r) * f5_2(ratio_all * film_thinning(r)) - 1.0;
       });
 
-  const SharedNumber film = film_under_all * film_thinning(share);
-  stages.film_ratio = film / rms_height;
-  const SharedNumber load_root = exponential((1.0 / 3) * (log_load + share));
-  const SharedNumber contact_area = unit_area * square(load_root);
-  const SharedNumber asperity_load = load_factor * contact_area * f5_2(stages.film_ratio);
+  const SharingNumber film = film_under_all * film_thinning(share), film_ratio = film / rms_height;
+  const SharingNumber load_root = exponential((1.0 / 3) * (log_load + share));
+  const SharingNumber contact_area = unit_area * square(load_root);
   const SharedNumber asperity_area =
-      area_factor * contact_area *
-      asperity_function(t, t.f2, 2, gaussian, v, cube, some, stages.film_ratio);
+      SharedNumber::variable(t.asperity_area_factor, kSharedAreaFactor) *
+      widened(contact_area * asperity_function(t, t.f2, 2, gaussian, v, cube, some, film_ratio));
+  stages.film_ratio = widened(film_ratio);
   stages.asperity_share = asperity_area.value / contact_area.value;
-  stages.viscous_area = viscous_area(contact_area, asperity_area);
+  const SharedNumber wide_area = widened(contact_area), wide_film = widened(film);
+  stages.viscous_area = viscous_area(wide_area, asperity_area);
   stages.boundary_friction = SharedNumber(0.0);
   if (!t.no_boundary_friction) {
     stages.boundary_friction = boundary_friction(
-        variable(t.boundary.tribofilm_shear_strength, kSharedTribofilm), asperity_area,
-        variable(t.boundary.asperity_friction_coefficient, kSharedAsperityFriction), asperity_load);
+        SharedNumber::variable(t.boundary.tribofilm_shear_strength, kSharedTribofilm),
+        asperity_area,
+        SharedNumber::variable(t.boundary.asperity_friction_coefficient, kSharedAsperityFriction),
+        widened(load_factor * contact_area * f5_2(film_ratio)));
   }
-  stages.pressure = unit(row(kSolvedUnitPressure), 2.0 / 3) * load_root;
+  stages.pressure = widened(unit(row(kSolvedUnitPressure), 2.0 / 3) * load_root);
 
-  const SharedNumber slide = variable(stages.slide.value, kSharedSlide);
-  stages.shear_rate = shear_rate(slide, film);
+  const SharedNumber slide = SharedNumber::variable(stages.slide.value, kSharedSlide);
+  stages.shear_rate = shear_rate(slide, wide_film);
   stages.base = SharedNumber(t.inlet_temperature);
   stages.gain = SharedNumber(0.0);
   if (t.isothermal) return;
   // A sqrt(U/l) grows as (W^(1/3))^(3/2) with the load.
-  const SharedNumber area = unit(row(kSolvedUnitArea), -0.5) * load_root * root(load_root);
+  const SharedNumber area = widened(unit(row(kSolvedUnitArea), -0.5) * load_root * root(load_root));
   const SharedNumber conductivity =
-      variable(t.shear.lubricant.thermal_conductivity, kSharedOilConductivity);
+      SharedNumber::variable(t.shear.lubricant.thermal_conductivity, kSharedOilConductivity);
+  const auto conductance = [&](const InletNumber& of_unit_ellipse, int n) HWY_ATTR {
+    return area * SharedNumber::variable(of_unit_ellipse.value, n);
+  };
   const ThermalLine<SharedNumber> line = contact_temperature(
       t.inlet_temperature,
-      slide * flash_resistance(2.0 * conductivity * contact_area, film,
-                               area * variable(stages.conductance_1.value, kSharedConductance1),
-                               area * variable(stages.conductance_2.value, kSharedConductance2)),
+      slide * flash_resistance(2.0 * conductivity * wide_area, wide_film,
+                               conductance(stages.conductance_1, kSharedConductance1),
+                               conductance(stages.conductance_2, kSharedConductance2)),
       stages.boundary_friction, stages.viscous_area,
-      oil_rise_per_stress(slide, film, conductivity));
+      oil_rise_per_stress(slide, wide_film, conductivity));
   stages.base = line.base;
   stages.gain = line.gain;
 }
@@ -222,15 +237,53 @@ struct Moments {
   Pack by_growth[kGrowthArguments];
 };
 
-constexpr int kMomentNodes = 16;
+/// Of the exponentials in Moments: their errors of 2e-8 are those of derivatives, relative.
+constexpr Digits kMomentDigits = Digits::kHalf;
 
-/// E-folds of the integrand that one panel of so many nodes integrates to 1e-10 (relative).
+/// A quadrature rule on [0, 1].
+struct Rule {
+  int nodes;
+  const double* node;
+  const double* weight;
+};
+template <int kNodes>
+Rule gauss_rule() {
+  const auto& r = gauss_legendre<kNodes>();
+  return {kNodes, r.node.data(), r.weight.data()};
+}
+
+/// E-folds of the integrand on a panel at most.
 constexpr double kMomentLogGrowth = 20;
 
-HWY_INLINE int panels_of(Pack log_growth, double most) {
+HWY_INLINE int panels_of(Pack log_growth) {
   int panels = 1;
-  while (panels < 64 && any(log_growth > panels * most)) ++panels;
+  while (panels < 64 && any(log_growth > panels * kMomentLogGrowth)) ++panels;
   return panels;
+}
+
+/// The fewest nodes, in twos, by the e-folds of the integrand on a panel: the integrals then err by
+/// less than 1e-8 (relative; greatest of 3,000 films under improved Yasutomi laws and of 20,000
+/// under Roelands's, with random parameters).
+HWY_INLINE Rule rule_for(Pack log_growth) {
+  if (!any(log_growth > 4)) return gauss_rule<8>();
+  if (!any(log_growth > 8)) return gauss_rule<10>();
+  if (!any(log_growth > 12)) return gauss_rule<12>();
+  if (!any(log_growth > 16)) return gauss_rule<14>();
+  return gauss_rule<16>();
+}
+
+/// Panels that are even in s, from 0 to a depth.
+struct Panels {
+  int count;
+  Pack width;
+  Rule rule;
+};
+/// `steepness`: d ln tau/ds at the depth `end`. There ln tau is steepest, so that the integrand has
+/// at most as many e-folds as if it grew so all along.
+HWY_INLINE Panels panels_to(Pack end, Pack steepness) {
+  const Pack log_growth = (steepness + 2) * end;
+  const int count = panels_of(log_growth);
+  return {count, end * (1.0 / count), rule_for(log_growth * (1.0 / count))};
 }
 
 /// How ln tau grows from the edge to a depth under a pressure-viscosity law, and the moments of
@@ -247,30 +300,23 @@ struct RoelandsMoments {
                                        Pack s) {
     return log_under_pressure(base, factor, exponential(t.shear.index * s) - 1);
   }
-  /// Panels that are even in ln tau.
   static HWY_INLINE void eval(const ContactBlockTables& t, Pack, Pack base, Pack factor, Pack end,
                               Moments& out) {
     const double index = t.shear.index;
-    const Pack end_growth = exponential(index * end) - 1;
-    const int panels = panels_of((index * factor * (end_growth + 1) + 2) * end, kMomentLogGrowth);
-    const auto& rule = gauss_legendre<kMomentNodes>();
-    Pack left = 0, value = 0, by_factor = 0, by_index = 0;
-    for (int panel = 1; panel <= panels; ++panel) {
-      const Pack right =
-          panel == panels
-              ? end
-              : logarithm((static_cast<double>(panel) / panels) * end_growth + 1) * (1 / index);
-      const Pack width = right - left;
-      for (int n = 0; n < kMomentNodes; ++n) {
-        const Pack s = fused(width, rule.node(n), left);
-        const Pack u = exponential(s), power = exponential(index * s), growth = power - 1;
-        const Pack stress = exponential(clamped(fused(factor, growth, base), -600, 100));
-        const Pack weighted = rule.weight(n) * width * stress * (u - 1) * u;
+    const Pack least = base - factor;
+    Pack value = 0, by_factor = 0, by_index = 0;
+    const Panels panels = panels_to(end, index * factor * exponential(index * end));
+    for (int panel = 0; panel < panels.count; ++panel) {
+      for (int n = 0; n < panels.rule.nodes; ++n) {
+        const Pack s = panels.width * (panel + panels.rule.node[n]);
+        const Pack u = exponential<kMomentDigits>(s), power = exponential<kMomentDigits>(index * s);
+        const Pack stress =
+            exponential<kMomentDigits>(clamped(fused(factor, power, least), -600, 100));
+        const Pack weighted = panels.rule.weight[n] * panels.width * stress * (u - 1) * u;
         value = value + weighted;
-        by_factor = fused(weighted, growth, by_factor);
+        by_factor = fused(weighted, power - 1, by_factor);
         by_index = fused(weighted * s, power, by_index);
       }
-      left = right;
     }
     for (int k = 2; k < kGrowthArguments; ++k) out.by_growth[k] = 0;
     out.value = value;
@@ -278,18 +324,6 @@ struct RoelandsMoments {
     out.by_growth[1] = factor * by_index;
   }
 };
-
-/// A quadrature rule on [0, 1].
-struct Rule {
-  int nodes;
-  const double* node;
-  const double* weight;
-};
-template <int kNodes>
-Rule gauss_rule() {
-  const auto& r = gauss_legendre<kNodes>();
-  return {kNodes, r.node.data(), r.weight.data()};
-}
 
 struct LawMoments {
   using Number = Dual<Pack, kGrowthArguments>;
@@ -299,37 +333,23 @@ struct LawMoments {
     return base + pressure_growth(t.shear.growth, temperature,
                                   exponential_less_one(s) * (1 / kRoelandsPressureCoefficient));
   }
-  /// The fewest nodes, in twos, by the e-folds of the integrand if it grew all along as at its end,
-  /// where it is steepest: the integrals then err by less than 1e-8 (relative; greatest of 3,000
-  /// films under improved Yasutomi laws with random parameters).
-  static HWY_INLINE Rule rule_for(Pack log_growth) {
-    if (!any(log_growth > 4)) return gauss_rule<8>();
-    if (!any(log_growth > 8)) return gauss_rule<10>();
-    if (!any(log_growth > 12)) return gauss_rule<12>();
-    if (!any(log_growth > 16)) return gauss_rule<14>();
-    return gauss_rule<16>();
-  }
-  /// Panels that are even in s.
   static HWY_INLINE void eval(const ContactBlockTables& t, Pack at, Pack base, Pack, Pack end,
                               Moments& out) {
     const auto end_pressure =
         exponential_less_one(Dual<Pack, 1>::variable(end, 0)) * (1 / kRoelandsPressureCoefficient);
-    const Pack steepness = pressure_growth(t.shear.growth, constant<1>(at), end_pressure).slope[0];
-    const Pack log_growth = (steepness + 2) * end;
-    const int panels = panels_of(log_growth, kMomentLogGrowth);
-    const Rule rule = rule_for(log_growth * (1.0 / panels));
     const auto law = by_its_parameters<Number>(t.shear.growth);
     const Number temperature = Number::variable(at, 0);
-    const Pack width = end * (1.0 / panels);
     out.value = 0;
     for (int k = 0; k < kGrowthArguments; ++k) out.by_growth[k] = 0;
-    for (int panel = 0; panel < panels; ++panel) {
-      for (int n = 0; n < rule.nodes; ++n) {
-        const Pack s = width * (panel + rule.node[n]), q = exponential_less_one(s);
+    const Panels panels =
+        panels_to(end, pressure_growth(t.shear.growth, constant<1>(at), end_pressure).slope[0]);
+    for (int panel = 0; panel < panels.count; ++panel) {
+      for (int n = 0; n < panels.rule.nodes; ++n) {
+        const Pack q = exponential_less_one(panels.width * (panel + panels.rule.node[n]));
         const Number growth = pressure_growth(
             law, temperature, constant<kGrowthArguments>(q * (1 / kRoelandsPressureCoefficient)));
-        const Pack stress = exponential(clamped(base + growth.value, -600, 100));
-        const Pack weighted = rule.weight[n] * width * stress * q * (q + 1);
+        const Pack stress = exponential<kMomentDigits>(clamped(base + growth.value, -600, 100));
+        const Pack weighted = panels.rule.weight[n] * panels.width * stress * q * (q + 1);
         out.value = out.value + weighted;
         for (int k = 0; k < kGrowthArguments; ++k) {
           out.by_growth[k] = fused(weighted, growth.slope[k], out.by_growth[k]);
@@ -413,8 +433,8 @@ HWY_NOINLINE void put_slopes(const ContactBlockTables& t, const Columns& solved,
 
   const Pack per_pressure = stages.by_log_pressure / stages.pressure.value;
   const Pack per_rate = stages.by_log_rate / stages.shear_rate.value;
-  Pack friction[kSharedUnknown], temperature[kSharedUnknown];
-  for (int k = 0; k < kSharedUnknown; ++k) {
+  Pack friction[kSharedVariables], temperature[kSharedVariables];
+  for (int k = 0; k < kSharedVariables; ++k) {
     const Pack line = fused(mean, stages.gain.slope[k], stages.base.slope[k]);
     const Pack log_stress =
         fused(per_pressure, stages.pressure.slope[k],

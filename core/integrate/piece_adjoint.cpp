@@ -144,17 +144,18 @@ HWY_INLINE Figures load_figures(const AdjointRow& from) {
   return load_row<kAdjointLanes>(from.data());
 }
 
-}  // namespace
+/// What the friction arms of a piece do, which follow the states that they change. With dX_1 =
+/// S + Q (arms at middle and end) of the end and these arms = N dX_1 + ...: with rows x by X_1,
+///   x = rows + (x Q) N  =>  x Q = rows Q (1 - N Q)^-1.
+struct ArmFeedback {
+  double q[kRates][kArms], n[kRates][kArms];  // of each state, by arm
+  double inverse[kArms][kArms];               // of 1 - N Q
+};
 
-void back_in_rows(const MotionConstants& c, const PieceSlopes& piece,
-                  const std::array<StateAdjoint, 3>* direct, StateAdjoint& state,
-                  PieceAdjoint& out) {
-  // dX_1 = S + Q (arms at middle and end), these arms = N dX_1 + ...: with rows x by X_1,
-  //   x = rows + (x Q) N  =>  x Q = rows Q (1 - N Q)^-1.
+HWY_INLINE void set_feedback(const MotionConstants& c, const PieceSlopes& piece, ArmFeedback& out) {
   Row<kArms> end_by_arm[kRates];
   step_by_arms(c, piece, end_by_arm);
-  double q[kRates][kArms];
-  for (int i = 0; i < kRates; ++i) store_row(end_by_arm[i], q[i]);
+  for (int i = 0; i < kRates; ++i) store_row(end_by_arm[i], out.q[i]);
 
   Row<kArms> arm_by_end[kRates], middle_arm[kRates];
   const double unit[2 * kArms - 1] = {0, 0, 0, 1, 0, 0, 0};
@@ -163,18 +164,21 @@ void back_in_rows(const MotionConstants& c, const PieceSlopes& piece,
   add_arms<kArms>(piece.arm[1], *piece.parts[1], arm(0), arm(1), middle_arm);
   add_arms<kArms>(piece.arm[2], *piece.parts[2], arm(2), arm(3), arm_by_end);
   add_middle_by_end<kArms>(c, piece, middle_arm, arm_by_end);
-  double n[kRates][kArms];  // of each state, by arm
-  for (int i = 0; i < kRates; ++i) store_row(arm_by_end[i], n[i]);
-  double inverse[kArms][kArms];
+  for (int i = 0; i < kRates; ++i) store_row(arm_by_end[i], out.n[i]);
   for (int a = 0; a < kArms; ++a) {
     for (int b = 0; b < kArms; ++b) {
       double sum = a == b ? 1 : 0;
-      for (int i = 1; i < kRates; ++i) sum -= n[i][a] * q[i][b];
-      inverse[a][b] = sum;
+      for (int i = 1; i < kRates; ++i) sum -= out.n[i][a] * out.q[i][b];
+      out.inverse[a][b] = sum;
     }
   }
-  invert(inverse);
+  invert(out.inverse);
+}
 
+HWY_INLINE void back_in_group(const MotionConstants& c, const PieceSlopes& piece,
+                              const ArmFeedback& feedback,
+                              const std::array<StateAdjoint, 3>* direct, StateAdjoint& state,
+                              PieceAdjoint& out) {
   Figures middle[kRates], x[kRates];
   for (int i = 0; i < kRates; ++i) {
     x[i] = load_figures(state[i]);
@@ -186,15 +190,15 @@ void back_in_rows(const MotionConstants& c, const PieceSlopes& piece,
   if (direct != nullptr) add_middle_by_end(c, piece, middle, x);
   Figures by_arm[kArms], solved[kArms];
   for (int a = 0; a < kArms; ++a) {
-    by_arm[a] = q[0][a] * x[0];
-    for (int i = 1; i < kRates; ++i) by_arm[a] = fused(q[i][a], x[i], by_arm[a]);
+    by_arm[a] = feedback.q[0][a] * x[0];
+    for (int i = 1; i < kRates; ++i) by_arm[a] = fused(feedback.q[i][a], x[i], by_arm[a]);
   }
   for (int b = 0; b < kArms; ++b) {
-    solved[b] = inverse[0][b] * by_arm[0];
-    for (int a = 1; a < kArms; ++a) solved[b] = fused(inverse[a][b], by_arm[a], solved[b]);
+    solved[b] = feedback.inverse[0][b] * by_arm[0];
+    for (int a = 1; a < kArms; ++a) solved[b] = fused(feedback.inverse[a][b], by_arm[a], solved[b]);
   }
   for (int i = 1; i < kRates; ++i) {
-    for (int a = 0; a < kArms; ++a) x[i] = fused(n[i][a], solved[a], x[i]);
+    for (int a = 0; a < kArms; ++a) x[i] = fused(feedback.n[i][a], solved[a], x[i]);
   }
 
   // The step, from its last stage to its first.
@@ -246,6 +250,19 @@ void back_in_rows(const MotionConstants& c, const PieceSlopes& piece,
   store_row(wheel_torque, out.wheel_torque.data());
 }
 
+}  // namespace
+
+void back_in_rows(const MotionConstants& c, const PieceSlopes& piece,
+                  const std::array<StateAdjoint, 3>* direct, std::span<StateAdjoint> groups,
+                  PieceAdjoint* out) {
+  ArmFeedback feedback;
+  set_feedback(c, piece, feedback);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const bool is_last = g + 1 == groups.size();
+    back_in_group(c, piece, feedback, is_last ? direct : nullptr, groups[g], out[g]);
+  }
+}
+
 void add_rows(int count, const AdjointRow* weights, const double* slopes, std::size_t stride,
               int rows, AdjointRow* sum) {
   constexpr int kTogether = 8;
@@ -281,8 +298,8 @@ namespace tribodyn {
 
 void pass_back(InstructionSet instruction_set, const MotionConstants& constants,
                const PieceSlopes& piece, const std::array<StateAdjoint, 3>* direct,
-               StateAdjoint& state, PieceAdjoint& out) {
-  TRIBODYN_RETURN_WITH(instruction_set, back_in_rows, constants, piece, direct, state, out)
+               std::span<StateAdjoint> groups, PieceAdjoint* out) {
+  TRIBODYN_RETURN_WITH(instruction_set, back_in_rows, constants, piece, direct, groups, out)
 }
 
 void add_weighted_slopes(InstructionSet instruction_set, int count, const AdjointRow* weights,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "core/driveline/motion.h"
 #include "core/numerics/instruction_set.h"
@@ -44,11 +45,12 @@ struct PieceAdjoint {
   AdjointRow pinion_torque, wheel_torque;        ///< T_s, T_w
 };
 
-/// Takes `state` from the end of a piece to its start. `direct`: derivatives by the states at
-/// start, middle and end of what the piece itself adds to the figures; null: nothing.
+/// Takes the adjoints of groups of figures from the end of a piece to its start. `direct`:
+/// derivatives by the states at start, middle and end of what the piece itself adds to the figures
+/// of the last group; null: nothing. `out`: one for each group.
 void pass_back(InstructionSet instruction_set, const MotionConstants& constants,
                const PieceSlopes& piece, const std::array<StateAdjoint, 3>* direct,
-               StateAdjoint& state, PieceAdjoint& out);
+               std::span<StateAdjoint> groups, PieceAdjoint* out);
 
 /// sum[l] += sum over the contacts of slope row l times their weights; `slopes` are `rows` arrays,
 /// `stride` numbers apart.

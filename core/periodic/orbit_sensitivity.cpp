@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "core/integrate/mesh_cycle_march.h"
 #include "core/integrate/piece_adjoint.h"
@@ -280,16 +281,18 @@ class OrbitDifferentiator {
       const ContactsAt& at = contacts_.at(index, part);
       slopes.arm[part] = {at.arm[0], at.arm[1]};
     }
+    const bool all = wanted_ == Wanted::kAll;
+    const std::span groups(adjoint_.data(), all ? kGroups : kOfEnd + 1);
+    std::array<PieceAdjoint, kGroups> by;
+    pass_back(instruction_set_, constants_, slopes, all ? &direct_ : nullptr, groups, by.data());
+    if (!all) return true;
     for (int g = 0; g < kGroups; ++g) {
-      PieceAdjoint by;
-      pass_back(instruction_set_, constants_, slopes, g == kOfFigures ? &direct_ : nullptr,
-                adjoint_[g], by);
       for (int f = 0; f < kAdjointLanes; ++f) {
-        by_pinion_torque_[g][f] += by.pinion_torque[f];
-        by_wheel_torque_[g][f] += by.wheel_torque[f];
+        by_pinion_torque_[g][f] += by[g].pinion_torque[f];
+        by_wheel_torque_[g][f] += by[g].wheel_torque[f];
       }
       for (int part = 0; part < 3; ++part) {
-        contacts_.weigh_arms(contacts_.at(index, part), g, by.arm[part]);
+        contacts_.weigh_arms(contacts_.at(index, part), g, by[g].arm[part]);
       }
     }
     return true;
