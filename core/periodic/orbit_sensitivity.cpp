@@ -10,7 +10,7 @@
 #include "core/integrate/mesh_cycle_march.h"
 #include "core/integrate/piece_adjoint.h"
 #include "core/integrate/runge_kutta.h"
-#include "core/numerics/square.h"
+#include "core/periodic/event_shift.h"
 #include "core/periodic/leading_multiplier.h"
 #include "core/periodic/orbit_contacts.h"
 
@@ -20,11 +20,10 @@ namespace {
 constexpr int kSectionStates = 7, kRates = kSectionStates + 1;  // rates: of time, then of states
 
 // The adjoints, in two groups of lanes: those of time and states at the end of the period; those of
-// the integrals of ContactSum, followed by those of the quantities below. Figures are computed from
-// the second group.
+// the integrals, followed by those of the extremes of the transmission error. Figures are computed
+// from the second group.
 enum Group { kOfEnd, kOfFigures, kGroups };
-enum { kSquaredLoss = kContactSums, kMinimum, kMaximum };
-constexpr int kIntegrals = kSquaredLoss + 1;
+enum { kMinimum = kIntegrals, kMaximum };
 static_assert(kGroups == OrbitContacts::kGroups);
 static_assert(kMaximum + 1 == kAdjointLanes && kRates == kAdjointLanes);
 
@@ -53,7 +52,7 @@ class OrbitDifferentiator {
         constants_(system_.constants()),
         model_(problem.contacts.model()),
         contacts_(system_, grid_, problem.contacts, model_, orbit, light_load_),
-        batch_(problem.contacts),
+        event_shift_(system_, grid_, problem.contacts, orbit, contacts_, kNoLoad * light_load_),
         wanted_(wanted) {}
 
   std::optional<OrbitSensitivity> run() { return pass_through() ? close() : std::nullopt; }
@@ -190,14 +189,6 @@ class OrbitDifferentiator {
     }
   }
 
-  /// Slope over phase of the mesh force at the start, middle or end of a piece, by the parabola
-  /// through its values there.
-  double force_slope(std::size_t index, int part) const {
-    const auto force = [&](int i) { return contacts_.at(index, i).mesh_force; };
-    const double rise = force(2) - force(0), bend = 2 * (force(0) - 2 * force(1) + force(2));
-    return (rise + (part - 1) * bend) / orbit_.pieces[index].length;
-  }
-
   /// Derivatives by the section states.
   using ByState = std::array<double, kRates>;
   static ByState by_state(const DifferentiatedInstant& at, const ArmSlopes& by_motion) {
@@ -209,14 +200,9 @@ class OrbitDifferentiator {
     return out;
   }
 
-  /// Time and states at the middle and the end of a piece, or their displacements.
-  using Rates = std::array<double, kRates>;
-  struct MiddleAndEnd {
-    Rates middle{}, end{};
-  };
   /// What displacements of middle and end of the piece at hand do to the quantities of each group,
   /// at fixed phases and with the friction arms held.
-  std::array<AdjointRow, kGroups> weighed(const MiddleAndEnd& moved) const {
+  std::array<AdjointRow, kGroups> weighed(const EventShift::MiddleAndEnd& moved) const {
     std::array<AdjointRow, kGroups> out{};
     for (int i = 0; i < kRates; ++i) {
       for (int f = 0; f < kAdjointLanes; ++f) {
@@ -228,9 +214,9 @@ class OrbitDifferentiator {
   }
 
   /// Adds what the change of the event at the end of a piece does through the state there: there
-  /// the transmission error is that of touching flanks, or the mesh force is 0. `off_motion`: as
-  /// off_motion_by() says, by the phase of the event.
-  void pass_event(std::size_t index, const MiddleAndEnd& off_motion) {
+  /// the transmission error is that of touching flanks, or the mesh force is 0. `off_motion`:
+  /// that of EventShift, by the phase of the event.
+  void pass_event(std::size_t index, const EventShift::MiddleAndEnd& off_motion) {
     const OrbitPiece& p = orbit_.pieces[index];
     const bool touch = p.regime.side != orbit_.pieces[index + 1].regime.side;
     const DifferentiatedInstant& end = part_[2];
@@ -241,7 +227,7 @@ class OrbitDifferentiator {
       zero = by_state(end, {1, 0, 0});
     }
     double slope = touch ? contacts_.at(index, 2).transmission_velocity * end.slopes.time
-                         : force_slope(index, 2);
+                         : event_shift_.force_slope(index, 2);
     const std::array<AdjointRow, kGroups> off = weighed(off_motion);
     for (int i = 1; i < kRates; ++i) slope += zero[i] * off_motion.end[i];
     for (int i = 1; i < kRates; ++i) {
@@ -258,21 +244,6 @@ class OrbitDifferentiator {
     const OrbitPiece& p = orbit_.pieces[index];
     const bool begins = index > 0 && is_event(index - 1);
     const bool ends = index + 1 < orbit_.pieces.size() && is_event(index);
-    for (StateAdjoint& each : direct_) each = {};
-    AdjointRow begin_adjoint{};
-    MiddleAndEnd off_motion[2];  // by the phase of the start and of the end
-    if (wanted_ == Wanted::kAll) {
-      if ((begins || ends) && !follow_motion(index, begins, ends)) return false;
-      add_integrals(index, begins, ends, begin_adjoint);
-      if (begins) off_motion[0] = off_motion_by(p, 1, 0);
-      if (ends) off_motion[1] = off_motion_by(p, 0, 1);
-    }
-    if (minimum_.piece == index) differentiate_extreme(p, minimum_, kMinimum);
-    if (maximum_.piece == index) differentiate_extreme(p, maximum_, kMaximum);
-    if (ends) pass_event(index, off_motion[1]);
-    event_adjoint_ = weighed(off_motion[0]);
-    for (int f = 0; f < kAdjointLanes; ++f) event_adjoint_[kOfFigures][f] += begin_adjoint[f];
-
     PieceSlopes slopes;
     slopes.length = p.length;
     slopes.stages = {&part_[0].slopes, &stage_[1].slopes, &stage_[2].slopes, &stage_[3].slopes};
@@ -281,7 +252,24 @@ class OrbitDifferentiator {
       const ContactsAt& at = contacts_.at(index, part);
       slopes.arm[part] = {at.arm[0], at.arm[1]};
     }
+    for (StateAdjoint& each : direct_) each = {};
+    AdjointRow begin_adjoint{};
+    EventShift::MiddleAndEnd off_motion[2];  // by the phase of the start and of the end
     const bool all = wanted_ == Wanted::kAll;
+    if (all) {
+      if ((begins || ends) && !event_shift_.follow_motion(index, slopes, begins, ends)) {
+        return false;
+      }
+      add_integrals(index, begins, ends, begin_adjoint);
+      if (begins) off_motion[0] = event_shift_.off_motion_by(1, 0);
+      if (ends) off_motion[1] = event_shift_.off_motion_by(0, 1);
+    }
+    if (minimum_.piece == index) differentiate_extreme(p, minimum_, kMinimum);
+    if (maximum_.piece == index) differentiate_extreme(p, maximum_, kMaximum);
+    if (ends) pass_event(index, off_motion[1]);
+    event_adjoint_ = weighed(off_motion[0]);
+    for (int f = 0; f < kAdjointLanes; ++f) event_adjoint_[kOfFigures][f] += begin_adjoint[f];
+
     const std::span groups(adjoint_.data(), all ? kGroups : kOfEnd + 1);
     std::array<PieceAdjoint, kGroups> by;
     pass_back(instruction_set_, constants_, slopes, all ? &direct_ : nullptr, groups, by.data());
@@ -302,124 +290,6 @@ class OrbitDifferentiator {
     return system_.input_speed(orbit_.torques, pinion_shaft_speed, wheel_speed);
   }
 
-  /// The integrands over phase of the integrals of add_integrals(), at an instant.
-  using Integrands = std::array<double, kIntegrals>;
-  Integrands integrands(const MarchState& y, const Instant& at) const {
-    Integrands out{};
-    out[kLossSum] = at.loss_power;
-    out[kFrictionTorqueSum] = at.pinion_friction_torque;
-    for (int k = 0; k < kFlankPairs; ++k) {
-      out[kLoadSum] += at.load[k];
-      out[kFilmRatioLoadSum] += at.contact[k].film_ratio * at.load[k];
-      out[kTemperatureLoadSum] += at.contact[k].contact_temperature * at.load[k];
-    }
-    out[kSquaredLoss] = square(at.loss_power / input_speed(y[kPinionShaftSpeed], y[kWheelSpeed]));
-    for (double& each : out) each *= system_.cycle_angle() / y[kPinionSpeed];
-    return out;
-  }
-
-  /// How integrands and friction arms change with phase along the motion.
-  struct ChangeAlong {
-    Integrands integrands{};
-    FrictionArms arms;  ///< 0 where the arms are held
-  };
-
-  /// Sets along_ at the parts of a piece that move with an event at its start or end, where they
-  /// are under load: by central differences over a thousandth of a step of the grid to either side,
-  /// or over what changes the load by a thousandth, whose relative error is about 1e-6. Returns
-  /// false if a contact is refused.
-  bool follow_motion(std::size_t index, bool begins, bool ends) {
-    const OrbitPiece& p = orbit_.pieces[index];
-    const double cycle = std::floor(p.phase + 1e-9);
-    ContactTally tally;
-    ContactSolver contacts(batch_, tally);
-    for (int part = 0; part < 3; ++part) {
-      along_[part] = {};
-      const bool moves = part == 0 ? begins : part == 2 ? ends : begins || ends;
-      const ContactsAt& unmoved = contacts_.at(index, part);
-      if (!moves || !has_load(unmoved)) continue;
-      const double part_phase = p.phase + 0.5 * part * p.length - cycle;
-      const int interval = system_.mesh().interval_at(part_phase);
-      const double step =
-          std::min(small_step(), 1e-3 * unmoved.load / std::abs(force_slope(index, part)));
-      for (const double shift : {-step, step}) {
-        MarchState y = state_of(p, part);
-        for (int i = 0; i < kRates; ++i) y[i] += shift * part_[part].slopes.rate[i];
-        Instant at;
-        if (system_.evaluate(part_phase + shift, interval, p.regime, y.data(), contacts, at) !=
-            ContactStatus::kOk) {
-          return false;
-        }
-        const Integrands there = integrands(y, at);
-        for (int f = 0; f < kIntegrals; ++f) along_[part].integrands[f] += there[f] / (2 * shift);
-        if (!unmoved.arms_follow) continue;
-        const double per_load = 1 / (2 * shift * p.regime.load(at.mesh_force));
-        along_[part].arms.pinion += at.pinion_friction_torque * per_load;
-        along_[part].arms.gear += at.gear_friction_torque * per_load;
-      }
-    }
-    return true;
-  }
-  /// Of central differences over phase [cycles]. Not a share of the piece, which may be so short
-  /// that rounding would decide.
-  double small_step() const { return 1e-3 / grid_.steps(); }
-  bool has_load(const ContactsAt& at) const { return at.load > kNoLoad * light_load_; }
-
-  /// Takes the step of a piece again after its start and end have moved by these phases [cycles].
-  /// The start state and the friction arms change as they do along the motion.
-  MiddleAndEnd moved_piece(const OrbitPiece& p, double start_shift, double end_shift) {
-    const double length = p.length + end_shift - start_shift;
-    FrictionArms arms[3];
-    MeshPhase phase[3];
-    for (int part = 0; part < 3; ++part) {
-      const double shift = (1 - 0.5 * part) * start_shift + 0.5 * part * end_shift;
-      const double at = p.phase + 0.5 * part * p.length;
-      arms[part] = friction_.at(at);
-      arms[part].pinion += shift * along_[part].arms.pinion;
-      arms[part].gear += shift * along_[part].arms.gear;
-      phase[part] = system_.at_phase(at + shift - std::floor(at + shift));
-    }
-    Rates start{}, rate{}, first_rate{};
-    // Friction follows the force as it does in the slopes of the piece: no kink where F is 0.
-    const auto set_rate = [&](int part, const StageSlopes& slopes, const Rates& y) {
-      Mechanics at;
-      system_.mechanics(phase[part], p.regime, y.data(), at);
-      const double load = slopes.load > 0 ? p.regime.side * at.mesh_force : 0;
-      at.pinion_friction_torque = arms[part].pinion * load;
-      at.gear_friction_torque = arms[part].gear * load;
-      system_.motion(y.data(), at, orbit_.torques, rate.data());
-    };
-    for (int i = 0; i < kRates; ++i) start[i] = p.start[i] + start_shift * part_[0].slopes.rate[i];
-    MiddleAndEnd out;
-    out.end = start;
-    for (int n = 0; n < 4; ++n) {
-      Rates stage = start;
-      for (int i = 0; i < kRates; ++i) stage[i] += kRungeKuttaNode[n] * length * rate[i];
-      set_rate(n == 0 ? 0 : n == 3 ? 2 : 1, n == 0 ? part_[0].slopes : stage_[n].slopes, stage);
-      if (n == 0) first_rate = rate;
-      for (int i = 0; i < kRates; ++i) out.end[i] += kRungeKuttaWeight[n] * length * rate[i];
-    }
-    // The middle by the rate of the last stage: Rk4WithEvents::middle().
-    for (int i = 0; i < kRates; ++i) {
-      out.middle[i] = 0.5 * (start[i] + out.end[i]) + length / 8 * (first_rate[i] - rate[i]);
-    }
-    return out;
-  }
-
-  /// Derivatives of a step's middle and end by the phase of its start (1, 0) or of its end (0, 1),
-  /// less those of the motion. They are not 0, because the error of a step depends on its length.
-  MiddleAndEnd off_motion_by(const OrbitPiece& p, int of_start, int of_end) {
-    const double step = small_step();
-    MiddleAndEnd out = moved_piece(p, of_start * step, of_end * step);
-    const MiddleAndEnd other = moved_piece(p, -of_start * step, -of_end * step);
-    for (int i = 0; i < kRates; ++i) {
-      out.middle[i] =
-          (out.middle[i] - other.middle[i]) / (2 * step) - 0.5 * part_[1].slopes.rate[i];
-      out.end[i] = (out.end[i] - other.end[i]) / (2 * step) - of_end * part_[2].slopes.rate[i];
-    }
-    return out;
-  }
-
   /// Adds the integrals of a piece by Simpson's rule. An end of the piece that is an event moves
   /// with it, and the middle half as far. Where the load begins or ends, the integrands stay 0; at
   /// a fixed phase they would have infinite derivatives, because they rise there like a power below
@@ -429,14 +299,13 @@ class OrbitDifferentiator {
     AdjointRow sum{};
     for (int part = 0; part < 3; ++part) {
       const ContactsAt& at = contacts_.at(index, part);
-      if (!has_load(at)) continue;
+      if (!event_shift_.has_load(at)) continue;
       const MarchState& y = state_of(p, part);
       const double phase_weight = p.length / 6 * (part == 1 ? 4 : 1);
       const double weight = phase_weight * system_.cycle_angle() / y[kPinionSpeed];
       const double speed = input_speed(y[kPinionShaftSpeed], y[kWheelSpeed]);
       const double share = at.sum[kLossSum] / speed;
       const double by_loss = 2 * share / speed;  // of the square
-      const Integrands& change = along_[part].integrands;
       for (int f = 0; f < kIntegrals; ++f) {
         const bool squared = f == kSquaredLoss;
         const double value = weight * (squared ? share * share : at.sum[f]);
@@ -454,9 +323,11 @@ class OrbitDifferentiator {
         }
         for (int i = 1; i < kRates; ++i) direct_[part][i][f] += by[i];
         sum[f] += value;
+        if (!begins && !ends) continue;
         // Of the events' phases.
-        begin_adjoint[f] += begins ? (1 - 0.5 * part) * phase_weight * change[f] : 0;
-        event_adjoint_[kOfFigures][f] += ends ? 0.5 * part * phase_weight * change[f] : 0;
+        const double change = event_shift_.integrands_along(part)[f];
+        begin_adjoint[f] += begins ? (1 - 0.5 * part) * phase_weight * change : 0;
+        event_adjoint_[kOfFigures][f] += ends ? 0.5 * part * phase_weight * change : 0;
       }
       contacts_.weigh_sums(at, weight, kSquaredLoss, weight * by_loss);
     }
@@ -607,11 +478,10 @@ class OrbitDifferentiator {
   const MotionConstants& constants_;
   ContactSensitivityModel model_;
   OrbitContacts contacts_;
-  const FlankContactBatch& batch_;
+  EventShift event_shift_;
   Wanted wanted_;
   /// Of the piece at hand, and the start of the one behind it.
   DifferentiatedInstant part_[3]{}, stage_[4]{}, behind_{};
-  ChangeAlong along_[3];  ///< of a piece with an event at its start or end
   std::array<StateAdjoint, 3> direct_;
   std::array<StateAdjoint, kGroups> adjoint_{};
   std::array<AdjointRow, kGroups> event_adjoint_{};  ///< of the phase of the event at a piece's end

@@ -24,21 +24,19 @@
 // rule takes the sums to the parameters once. Extremes are differentiated at fixed phase. Where
 // flanks part or meet the rates f jump, and the states at a fixed phase change by (f- - f+) dphi,
 // dphi the phase change of the event (saltation). Pieces that start or end at an event become
-// longer or shorter with it: central differences along the motion give what that does to their
-// steps and integrals. (R. Seydel, Practical Bifurcation and Stability Analysis, 3rd ed., 2010,
-// section 7.4; R. I. Leine and H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical
-// Systems, 2004, section 7.4; for the adjoints A. Griewank and A. Walther, Evaluating Derivatives,
-// 2nd ed., 2008, chapters 3 and 15.)
+// longer or shorter with it (event_shift.h). (R. Seydel, Practical Bifurcation and Stability
+// Analysis, 3rd ed., 2010, section 7.4; R. I. Leine and H. Nijmeijer, Dynamics and Bifurcations of
+// Non-Smooth Mechanical Systems, 2004, section 7.4; for the adjoints A. Griewank and A. Walther,
+// Evaluating Derivatives, 2nd ed., 2008, chapters 3 and 15.)
 //
 // Measured against central differences on the same grid, extrapolated from relative steps of 1e-4
 // and 5e-5: at 200 random smooth points all elasticities agree within 4.4e-6. (Steps of 4e-4 pass
 // kinks of the response at six of them, and the differences then err by up to 4e-5.) At 100 random
 // points with impacts they agree within 2.5e-4 on 192 steps a cycle (relative steps of 2e-5 and
 // 1e-5); on 96 steps within 1e-4 but for one point near a resonance, where the elasticity of -2.18
-// by the mean speed errs by 2e-3, and the grid itself by 7e-2. All derivatives together take 2.2 to
-// 2.8 times as long as the figures of a smooth point at the usual tolerance, also under the
-// improved Yasutomi law, and as long as those of a point with impacts (20 to 140 km/h, AVX2, least
-// times).
+// by the mean speed errs by 2e-3, and the grid itself by 7e-2. All derivatives together take 2
+// to 2.75 times as long as the figures of a smooth point at the usual tolerance, and as long as
+// those of a point with impacts (20 to 140 km/h, AVX2).
 
 namespace tribodyn {
 
