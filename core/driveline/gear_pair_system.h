@@ -183,6 +183,13 @@ class GearPairSystem {
   const MotionConstants& constants() const { return constants_; }
 
  private:
+  // As kinematics() and mechanics(), but inlined in motion() and events(): points whose flanks part
+  // take 0.94 of their time so.
+  void set_kinematics(const MeshPhase& phase, const ContactRegime& regime, const double* state,
+                      Mechanics& out) const;
+  void set_mechanics(const MeshPhase& phase, const ContactRegime& regime, const double* state,
+                     Mechanics& out) const;
+
   const MeshData& mesh_;
   const DrivelineDynamics& dynamics_;
   ModelOptions options_;
