@@ -166,6 +166,8 @@ class FlankContactBatch {
 
   /// Fills in the derivatives of contacts that solve() has solved, not by the scalar kernel: those
   /// that ContactSensitivityModel has by conditions, and by ContactLevel instead of by parameters.
+  /// Other than of results, the last digits of derivatives depend on the contacts beside and on the
+  /// width of the vectors: lanes take as many quadrature nodes as the lane that needs most.
   void differentiate(DifferentiatedContacts& contacts) const;
 
  private:

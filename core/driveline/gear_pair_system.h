@@ -183,12 +183,12 @@ class GearPairSystem {
   const MotionConstants& constants() const { return constants_; }
 
  private:
-  // As kinematics() and mechanics(), but inlined in motion() and events(): points whose flanks part
-  // take 0.94 of their time so.
-  void set_kinematics(const MeshPhase& phase, const ContactRegime& regime, const double* state,
-                      Mechanics& out) const;
-  void set_mechanics(const MeshPhase& phase, const ContactRegime& regime, const double* state,
-                     Mechanics& out) const;
+  // As kinematics() and mechanics(). motion() and events() inline them: a point whose flanks part
+  // then takes 0.94 of the time (median of 15 at 67.5 to 80 km/h and tolerances of 5e-3 to 1e-5).
+  inline void set_kinematics(const MeshPhase& phase, const ContactRegime& regime,
+                             const double* state, Mechanics& out) const;
+  inline void set_mechanics(const MeshPhase& phase, const ContactRegime& regime,
+                            const double* state, Mechanics& out) const;
 
   const MeshData& mesh_;
   const DrivelineDynamics& dynamics_;

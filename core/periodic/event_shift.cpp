@@ -11,13 +11,13 @@ namespace tribodyn {
 
 EventShift::EventShift(const GearPairSystem& system, const MeshGrid& grid,
                        const FlankContactBatch& batch, const PeriodicOrbit& orbit,
-                       const OrbitContacts& contacts, double no_load)
+                       FrozenFriction& friction, const OrbitContacts& contacts, double no_load)
     : system_(system),
       grid_(grid),
       batch_(batch),
       orbit_(orbit),
+      friction_(friction),
       contacts_(contacts),
-      friction_(orbit.friction),
       no_load_(no_load) {}
 
 double EventShift::force_slope(std::size_t piece, int part) const {

@@ -13,22 +13,23 @@ inline constexpr int kSquaredLoss = kContactSums;
 inline constexpr int kIntegrals = kSquaredLoss + 1;
 
 /// What a shift of the events at the ends of a piece does to the piece: its step and its integrals
-/// become longer or shorter, and the error of a step depends on its length. By central differences
-/// along the motion, whose relative error is about 1e-6.
+/// become longer or shorter, and the error of a step depends on its length. Central differences
+/// along the motion, which err by about 1e-6 (relative).
 class EventShift {
  public:
   /// Keeps the references. Under `no_load` [N] contacts add nothing to the integrals.
   EventShift(const GearPairSystem& system, const MeshGrid& grid, const FlankContactBatch& batch,
-             const PeriodicOrbit& orbit, const OrbitContacts& contacts, double no_load);
+             const PeriodicOrbit& orbit, FrozenFriction& friction, const OrbitContacts& contacts,
+             double no_load);
 
-  /// Prepares the functions below for a piece whose start or end, or both, move with an event. The
-  /// slopes must stay as they are until the last of these calls. Returns false if a contact is
-  /// refused.
+  /// Prepares integrands_along() and off_motion_by() for a piece whose start or end, or both, move
+  /// with an event. The slopes must stay as they are until the last of these calls. Returns false
+  /// if a contact is refused.
   bool follow_motion(std::size_t piece, const PieceSlopes& slopes, bool start_moves,
                      bool end_moves);
 
   /// How the integrands over phase change with phase along the motion [per cycle], at the start,
-  /// middle or end; 0 where they do not move or bear no load.
+  /// middle or end; 0 at a part that does not move or bears no load.
   using Integrands = std::array<double, kIntegrals>;
   const Integrands& integrands_along(int part) const { return along_[part].integrands; }
 
@@ -53,8 +54,8 @@ class EventShift {
     FrictionArms arms;  ///< 0 where the arms are held
   };
 
-  /// Of central differences [cycles]. Not a share of the piece, which may be so short that rounding
-  /// would decide.
+  /// Of central differences [cycles]: a thousandth of a step of the grid. Not a share of the piece,
+  /// which may be so short that rounding would decide.
   double small_step() const { return 1e-3 / grid_.steps(); }
   Integrands integrands(const MarchState& y, const Instant& at) const;
   MiddleAndEnd moved_piece(double start_shift, double end_shift);
@@ -63,8 +64,8 @@ class EventShift {
   const MeshGrid& grid_;
   const FlankContactBatch& batch_;
   const PeriodicOrbit& orbit_;
+  FrozenFriction& friction_;
   const OrbitContacts& contacts_;
-  FrozenFriction friction_;
   double no_load_;
   /// Of the piece at hand.
   const OrbitPiece* piece_ = nullptr;

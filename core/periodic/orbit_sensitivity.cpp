@@ -35,8 +35,8 @@ struct DifferentiatedInstant {
 
 class OrbitDifferentiator {
  public:
-  /// The multiplier needs neither the integrals nor the effect of a shifted event on the steps
-  /// beside it.
+  /// The multiplier needs neither the figures and their adjoints nor the effect of a shifted event
+  /// on the steps beside it.
   enum class Wanted { kAll, kMultiplier };
 
   OrbitDifferentiator(const PeriodicProblem& problem, const PeriodicOrbit& orbit, Wanted wanted)
@@ -52,7 +52,8 @@ class OrbitDifferentiator {
         constants_(system_.constants()),
         model_(problem.contacts.model()),
         contacts_(system_, grid_, problem.contacts, model_, orbit, light_load_),
-        event_shift_(system_, grid_, problem.contacts, orbit, contacts_, kNoLoad * light_load_),
+        event_shift_(system_, grid_, problem.contacts, orbit, friction_, contacts_,
+                     kNoLoad * light_load_),
         wanted_(wanted) {}
 
   std::optional<OrbitSensitivity> run() { return pass_through() ? close() : std::nullopt; }
@@ -75,7 +76,7 @@ class OrbitDifferentiator {
   /// derivatives.
   bool pass_through() {
     if (!contacts_.differentiate()) return false;
-    find_extremes();
+    if (wanted_ == Wanted::kAll) find_extremes();
     for (int i = 0; i < kRates; ++i) adjoint_[kOfEnd][i][i] = 1;
     for (std::size_t i = orbit_.pieces.size(); i-- > 0;) {
       evaluate_instants(i);
@@ -263,9 +264,9 @@ class OrbitDifferentiator {
       add_integrals(index, begins, ends, begin_adjoint);
       if (begins) off_motion[0] = event_shift_.off_motion_by(1, 0);
       if (ends) off_motion[1] = event_shift_.off_motion_by(0, 1);
+      if (minimum_.piece == index) differentiate_extreme(p, minimum_, kMinimum);
+      if (maximum_.piece == index) differentiate_extreme(p, maximum_, kMaximum);
     }
-    if (minimum_.piece == index) differentiate_extreme(p, minimum_, kMinimum);
-    if (maximum_.piece == index) differentiate_extreme(p, maximum_, kMaximum);
     if (ends) pass_event(index, off_motion[1]);
     event_adjoint_ = weighed(off_motion[0]);
     for (int f = 0; f < kAdjointLanes; ++f) event_adjoint_[kOfFigures][f] += begin_adjoint[f];

@@ -93,9 +93,10 @@ std::string etag_of(const StoredSimulation& stored) {
                      static_cast<std::uint64_t>(checksum(name_of(stored) + stored.request)));
 }
 
-/// Returns what the server knows of a stored simulation beyond its request, without the result.
-v1::Simulation server_part(Application& application, const StoredSimulation& stored) {
+/// Returns the stored simulation as a message, without its result.
+v1::Simulation to_message(Application& application, const StoredSimulation& stored) {
   v1::Simulation out;
+  out.ParseFromString(stored.request);
   out.set_name(name_of(stored));
   out.set_state(static_cast<v1::Simulation::State>(stored.state));
   set_revisions(stored.revisions, out);
@@ -124,14 +125,6 @@ v1::Simulation server_part(Application& application, const StoredSimulation& sto
     const auto progress = application.jobs.progress(stored.id);
     if (progress) out.set_progress_fraction(progress->fraction);
   }
-  return out;
-}
-
-/// Returns the stored simulation as a message, without its result.
-v1::Simulation to_message(Application& application, const StoredSimulation& stored) {
-  v1::Simulation out;
-  out.ParseFromString(stored.request);
-  out.MergeFrom(server_part(application, stored));
   return out;
 }
 
@@ -182,18 +175,6 @@ void set_result(Application& application, v1::SimulationView view, v1::Simulatio
   }
   out.mutable_result()->ParseFromString(*result);
   if (meant == v1::SIMULATION_VIEW_SUMMARY) summarise(*out.mutable_result());
-}
-
-/// Adds the simulation with a stored request and this server_part() to a page, as bytes: the store
-/// holds requests in the wire format, in which two messages one after the other are one message
-/// with the fields of both.
-void add_unparsed(const std::string& request, const v1::Simulation& server_part,
-                  v1::ListSimulationsResponse& page) {
-  auto* unknown = v1::ListSimulationsResponse::GetReflection()->MutableUnknownFields(&page);
-  std::string& sent =
-      *unknown->AddLengthDelimited(v1::ListSimulationsResponse::kSimulationsFieldNumber);
-  sent = request;
-  server_part.AppendToString(&sent);
 }
 
 bool is_ascending(const std::string& order_by, Violations& violations) {
@@ -334,25 +315,19 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
   const Page<StoredSimulation> page = application.store.simulations(query, call.limits);
   if (query.counts_all) total = page.total;
   response.set_total_size(clamped_total(total));
-  const bool sends_stored_bytes = call.sends_wire_format && mask.is_whole();
   std::size_t bytes = 0;
-  std::size_t rows = 0;
-  for (; rows < page.rows.size(); ++rows) {
-    const StoredSimulation& row = page.rows[rows];
-    v1::Simulation next =
-        sends_stored_bytes ? server_part(application, row) : to_message(application, row);
+  bool is_cut = false;
+  for (const StoredSimulation& row : page.rows) {
+    v1::Simulation next = to_message(application, row);
     set_result(application, request.view(), fallback, mask, row.id, next, call);
     mask.apply(next);
-    bytes += next.ByteSizeLong() + (sends_stored_bytes ? row.request.size() : 0);
-    if (rows > 0 && bytes > kMaximumPageBytes) break;
-    if (sends_stored_bytes) {
-      add_unparsed(row.request, next, response);
-    } else {
-      *response.add_simulations() = std::move(next);
-    }
+    bytes += next.ByteSizeLong();
+    is_cut = response.simulations_size() > 0 && bytes > kMaximumPageBytes;
+    if (is_cut) break;
+    *response.add_simulations() = std::move(next);
   }
-  if (page.more || rows < page.rows.size()) {
-    const StoredSimulation& last = page.rows[rows - 1];
+  if (page.more || is_cut) {
+    const StoredSimulation& last = page.rows[response.simulations_size() - 1];
     response.set_next_page_token(
         page_token(application.page_token_key, scope,
                    {{last.create_time, relative_name(name_of(last))}, total}));

@@ -14,17 +14,21 @@ constexpr char kSelectCampaigns[] =
     "request_id, request_hash, input_hash, model_version, platform, principal, candidates, "
     "conditions, points_done, points_refused, lost_attempts, budget_seconds, budget_points, "
     "processor_seconds, cost_seconds, stored_bytes, "
-    "lubricant, gear_set, surface, vehicle "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = lubricant), "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = gear_set), "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = surface), "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle) "
     "FROM campaigns ";
 
-/// Returns the name of a revision; empty if it is not of this collection: no column is NULL, and
-/// one without a resource has the lubricant.
-std::string own_revision(const std::string& name, std::string_view collection) {
+/// Returns the relative name of a revision; empty if it is not of this collection: no column is
+/// NULL, and one without a resource has the lubricant.
+std::string own_revision(const std::string& full, std::string_view collection) {
+  std::string name = relative_name(full);
   const bool is_own = name.starts_with(collection) && name[collection.size()] == '/';
   return is_own ? name : std::string();
 }
 
-StoredCampaign stored_campaign(const SQLite::Statement& query, RevisionNames& names) {
+StoredCampaign stored_campaign(const SQLite::Statement& query) {
   StoredCampaign out;
   int at = 0;
   const auto next = [&] { return query.getColumn(at++); };
@@ -53,10 +57,10 @@ StoredCampaign stored_campaign(const SQLite::Statement& query, RevisionNames& na
   out.processor_seconds = next().getDouble();
   out.cost_seconds = next().getDouble();
   out.stored_bytes = next().getInt64();
-  out.revisions.lubricant = names.of(next());
-  out.revisions.gear_set = own_revision(names.of(next()), kGearSets);
-  out.revisions.surface = own_revision(names.of(next()), kSurfaces);
-  out.revisions.vehicle = own_revision(names.of(next()), kVehicles);
+  out.revisions.lubricant = relative_name(next().getString());
+  out.revisions.gear_set = own_revision(next().getString(), kGearSets);
+  out.revisions.surface = own_revision(next().getString(), kSurfaces);
+  out.revisions.vehicle = own_revision(next().getString(), kVehicles);
   return out;
 }
 
@@ -127,27 +131,23 @@ CampaignAdded insert_campaign(Connection& db, const NewCampaign& campaign, Micro
   return {CampaignAdded::Kind::kAdded, *query_campaign(db, id)};
 }
 
-/// Returns the only campaign that a condition can select.
-template <class... Values>
-std::optional<StoredCampaign> find_campaign(Connection& db, const char* where,
-                                            const Values&... values) {
-  RevisionNames names(db);
-  return Prepared(db, std::string(kSelectCampaigns) + where, values...)
-      .first([&](const SQLite::Statement& row) { return stored_campaign(row, names); });
-}
-
 std::optional<StoredCampaign> query_campaign(Connection& db, std::int64_t id) {
-  return find_campaign(db, "WHERE id = ?", id);
+  Prepared query(db, std::string(kSelectCampaigns) + "WHERE id = ?", id);
+  return query.first(stored_campaign);
 }
 
 std::optional<StoredCampaign> query_numbered_campaign(Connection& db, const std::string& project,
                                                       std::int64_t number) {
-  return find_campaign(db, "WHERE project = ? AND number = ?", project, number);
+  Prepared query(db, std::string(kSelectCampaigns) + "WHERE project = ? AND number = ?", project,
+                 number);
+  return query.first(stored_campaign);
 }
 
 std::optional<StoredCampaign> query_campaign_of_request(Connection& db, const std::string& project,
                                                         const std::string& request_id) {
-  return find_campaign(db, "WHERE project = ? AND request_id = ?", project, request_id);
+  Prepared query(db, std::string(kSelectCampaigns) + "WHERE project = ? AND request_id = ?",
+                 project, request_id);
+  return query.first(stored_campaign);
 }
 
 Page<StoredCampaign> query_campaigns(Connection& db, const CampaignQuery& wanted) {
@@ -161,8 +161,7 @@ Page<StoredCampaign> query_campaigns(Connection& db, const CampaignQuery& wanted
   }
   bind_values(query, values);
   Page<StoredCampaign> out;
-  RevisionNames names(db);
-  while (query.executeStep()) out.rows.push_back(stored_campaign(query, names));
+  while (query.executeStep()) out.rows.push_back(stored_campaign(query));
   out.more = out.rows.size() > static_cast<std::size_t>(wanted.limit);
   if (out.more) out.rows.pop_back();
   SQLite::Statement count(db, "SELECT count(*) FROM campaigns WHERE " + all.sql);

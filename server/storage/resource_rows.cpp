@@ -62,7 +62,7 @@ RevisionRow revision_row(const std::string& project, const std::string& revision
 const std::string& RevisionNames::of(const SQLite::Column& revision) {
   const auto [known, is_new] =
       known_.try_emplace(revision.getInt64());  // NULL: 0, which no row has
-  if (is_new) {
+  if (is_new && !revision.isNull()) {
     Prepared query(db_, "SELECT name || '@' || revision FROM revision_names WHERE revision_id = ?",
                    known->first);
     if (query.executeStep()) known->second = relative_name(query.getColumn(0).getString());

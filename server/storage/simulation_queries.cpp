@@ -31,7 +31,7 @@ Page<StoredSimulation> query_simulations(Connection& db, const SimulationQuery& 
   const Condition condition = list_condition(db, "simulations", query.project, query.restrictions);
   const std::string where = "WHERE " + condition.sql;
   std::vector<PropertyValue> values = condition.values;
-  std::string sql = kSimulationColumns + where;
+  std::string sql = simulation_columns(RevisionColumns::kRows) + where;
   const std::vector<PropertyValue> all_values = values;
   const std::string direction = query.ascending ? " ASC" : " DESC";
   if (query.after) {
@@ -46,7 +46,7 @@ Page<StoredSimulation> query_simulations(Connection& db, const SimulationQuery& 
     RevisionNames names(db);
     return read_page<StoredSimulation>(
         statement, query.limit, query.byte_limit, kRequestColumn,
-        [&](const SQLite::Statement& row) { return stored_simulation(row, names); });
+        [&](const SQLite::Statement& row) { return stored_simulation(row, &names); });
   };
   Page<StoredSimulation> page;
   if (query.restrictions.empty()) {

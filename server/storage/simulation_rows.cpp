@@ -11,12 +11,21 @@
 
 namespace tribodyn::server {
 
-const char kSimulationColumns[] =
-    "SELECT id, state, attempt, sequence, create_time, start_time, end_time, deadline_time, "
-    "request, request_hash, is_forced, cache_hit, input_hash, error_reason, error_message, "
-    "lubricant, gear_set, surface, vehicle, request_id, pinned, client, cost_seconds, principal, "
-    "scheduling_class, project, number "
-    "FROM simulations ";
+std::string simulation_columns(RevisionColumns form) {
+  std::string out =
+      "SELECT id, state, attempt, sequence, create_time, start_time, end_time, deadline_time, "
+      "request, request_hash, is_forced, cache_hit, input_hash, error_reason, error_message, ";
+  out +=
+      form == RevisionColumns::kRows
+          ? "lubricant, gear_set, surface, vehicle, "
+          : "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = lubricant), "
+            "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = gear_set), "
+            "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = surface), "
+            "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle), ";
+  return out +
+         "request_id, pinned, client, cost_seconds, principal, scheduling_class, project, number "
+         "FROM simulations ";
+}
 
 namespace {
 
@@ -252,7 +261,11 @@ std::int64_t ledger_row(Connection& db, const std::string& body) {
   return row;
 }
 
-StoredSimulation stored_simulation(const SQLite::Statement& query, RevisionNames& names) {
+StoredSimulation stored_simulation(const SQLite::Statement& query, RevisionNames* names) {
+  const auto revision = [&](int column) {
+    const SQLite::Column value = query.getColumn(column);
+    return names != nullptr ? names->of(value) : relative_name(value.getString());
+  };
   StoredSimulation out;
   out.id = query.getColumn(0).getInt64();
   out.state = static_cast<StoredState>(query.getColumn(1).getInt());
@@ -269,10 +282,10 @@ StoredSimulation stored_simulation(const SQLite::Statement& query, RevisionNames
   out.input_hash = query.getColumn(12).getString();
   out.error_reason = query.getColumn(13).getString();
   out.error_message = query.getColumn(14).getString();
-  out.revisions.lubricant = names.of(query.getColumn(15));
-  out.revisions.gear_set = names.of(query.getColumn(16));
-  out.revisions.surface = names.of(query.getColumn(17));
-  out.revisions.vehicle = names.of(query.getColumn(18));
+  out.revisions.lubricant = revision(15);
+  out.revisions.gear_set = revision(16);
+  out.revisions.surface = revision(17);
+  out.revisions.vehicle = revision(18);
   out.request_id = query.getColumn(19).getString();
   out.is_pinned = query.getColumn(20).getInt() != 0;
   out.client = query.getColumn(21).getString();
@@ -288,9 +301,8 @@ StoredSimulation stored_simulation(const SQLite::Statement& query, RevisionNames
 template <class... Values>
 std::optional<StoredSimulation> find_simulation(Connection& db, const char* where,
                                                 const Values&... values) {
-  RevisionNames names(db);
-  return Prepared(db, std::string(kSimulationColumns) + where, values...)
-      .first([&](const SQLite::Statement& row) { return stored_simulation(row, names); });
+  return Prepared(db, simulation_columns(RevisionColumns::kNames) + where, values...)
+      .first([](const SQLite::Statement& row) { return stored_simulation(row, nullptr); });
 }
 
 std::optional<StoredSimulation> query_simulation(Connection& db, std::int64_t id) {

@@ -25,10 +25,15 @@ bool set_labels(Connection& db, std::int64_t id, const std::string& before,
 /// damaged.
 std::int64_t ledger_row(Connection& db, const std::string& body);
 
-/// Columns of stored_simulation, to be followed by the rest of a SELECT over simulations.
-extern const char kSimulationColumns[];
+/// What the columns of revisions hold: their names, which fits a statement for one simulation, or
+/// the rows that RevisionNames names, which fits a page.
+enum class RevisionColumns { kNames, kRows };
+/// Returns the columns of stored_simulation(), to be followed by the rest of a SELECT over
+/// simulations.
+std::string simulation_columns(RevisionColumns form);
 inline constexpr int kRequestColumn = 8;
-StoredSimulation stored_simulation(const SQLite::Statement& query, RevisionNames& names);
+/// `names`: set for RevisionColumns::kRows, null for kNames.
+StoredSimulation stored_simulation(const SQLite::Statement& query, RevisionNames* names);
 
 std::optional<StoredSimulation> query_simulation(Connection& db, std::int64_t id);
 std::optional<StoredSimulation> query_numbered_simulation(Connection& db,

@@ -603,27 +603,6 @@ TEST_F(AppTest, AResultThatIsSentUnparsedArrivesAsTheSameMessage) {
   }
 }
 
-TEST_F(AppTest, AListThatIsSentUnparsedArrivesAsTheSameMessage) {
-  CallContext sent_as_bytes;
-  sent_as_bytes.sends_wire_format = true;
-  for (int i = 0; i < 3; ++i) finished(labelled("axle", 40 + i));
-  v1::ListSimulationsRequest request;
-  request.set_page_size(2);
-  for (const auto view : {v1::SIMULATION_VIEW_UNSPECIFIED, v1::SIMULATION_VIEW_BASIC,
-                          v1::SIMULATION_VIEW_SUMMARY, v1::SIMULATION_VIEW_FULL}) {
-    request.set_view(view);
-    const v1::ListSimulationsResponse sent =
-        list_simulations(app_, request, sent_as_bytes).message();
-    EXPECT_EQ(sent.simulations_size(), 0) << "their requests are not parsed";
-    v1::ListSimulationsResponse received;
-    ASSERT_TRUE(received.ParseFromString(sent.SerializeAsString()));
-    EXPECT_EQ(received.simulations_size(), 2);
-    EXPECT_EQ(received.simulations(0).labels_size(), 1);
-    EXPECT_EQ(received.SerializeAsString(),
-              list_simulations(app_, request).message().SerializeAsString());
-  }
-}
-
 /// Sets every field: numbers to what takes most bytes, lists to `elements` entries.
 void fill(google::protobuf::Message& message, int elements) {
   using google::protobuf::FieldDescriptor;
