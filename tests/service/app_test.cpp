@@ -372,6 +372,27 @@ TEST_F(AppTest, AListOfFullViewsHasResultsAndEverySimulationOnce) {
       << "a token belongs to its filter";
 }
 
+TEST_F(AppTest, AListHasSimulationsAsTheyAreReadOneByOne) {
+  for (const char* lubricant : {"lubricants/paper-fluid-1", "lubricants/paper-fluid-2"}) {
+    for (const double speed : {40.0, 60.0}) {
+      v1::Simulation simulation = labelled("axle", speed);
+      simulation.set_lubricant(lubricant);
+      finished(simulation);
+    }
+  }
+  std::set<std::string> lubricants;
+  const auto page = list_simulations(app_, {}).message();
+  for (const v1::Simulation& listed : page.simulations()) {
+    auto request = named<v1::GetSimulationRequest>(listed.name());
+    request.set_view(v1::SIMULATION_VIEW_BASIC);
+    EXPECT_EQ(listed.SerializeAsString(),
+              get_simulation(app_, request).message().SerializeAsString());
+    lubricants.insert(listed.lubricant_revision());
+  }
+  EXPECT_EQ(lubricants,
+            (std::set<std::string>{"lubricants/paper-fluid-1@1", "lubricants/paper-fluid-2@1"}));
+}
+
 TEST_F(AppTest, AListTellsHowManyThereAreInAll) {
   for (int i = 0; i < 5; ++i) finished(labelled(i < 3 ? "axle" : "other", 40 + i));
   v1::ListSimulationsRequest request;
