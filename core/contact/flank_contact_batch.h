@@ -166,8 +166,9 @@ class FlankContactBatch {
 
   /// Fills in the derivatives of contacts that solve() has solved, not by the scalar kernel: those
   /// that ContactSensitivityModel has by conditions, and by ContactLevel instead of by parameters.
-  /// Other than of results, the last digits of derivatives depend on the contacts beside and on the
-  /// width of the vectors: lanes take as many quadrature nodes as the lane that needs most.
+  /// Unlike those of results, the last digits of derivatives depend on the neighbouring contacts
+  /// and on the width of the vectors: every lane takes the greatest number of quadrature nodes that
+  /// a lane beside it needs.
   void differentiate(DifferentiatedContacts& contacts) const;
 
  private:

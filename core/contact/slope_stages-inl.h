@@ -34,7 +34,7 @@ enum { kInletLoading = kConditionSlopes, kInletModulus, kInletVariables };
 using InletNumber = Dual<Pack, kInletVariables>;
 
 /// What the contact follows from once the film is known that would carry all of the load: first
-/// what decides how film and asperities share it, then the rest.
+/// what decides how film and asperities share the load, then the rest.
 enum SharedVariable {
   kSharedLoad,
   kSharedFilm,     // h_cen if the film carried all
@@ -55,6 +55,7 @@ enum SharedVariable {
 using SharingNumber = Dual<Pack, kSharingVariables + 1>;
 using SharedNumber = Dual<Pack, kSharedVariables>;
 
+/// The same number with derivatives by all shared variables: by the further ones they are 0.
 HWY_INLINE SharedNumber widened(const SharingNumber& x) {
   SharedNumber out(0.0);
   out.value = x.value;
@@ -237,8 +238,9 @@ struct Moments {
   Pack by_growth[kGrowthArguments];
 };
 
-/// Of factors of the integrand, whose relative errors of 2e-8 are then those of the moments. What
-/// stands in an exponent has all digits: there a factor of up to 20 multiplies its error.
+/// Digits of the exponentials that are factors of the integrand: the moments err by as much, 2e-8
+/// (relative). Exponentials inside an exponent are computed with all digits, because an exponent
+/// of up to 20 would multiply their relative error by as much.
 constexpr Digits kMomentDigits = Digits::kHalf;
 
 /// A quadrature rule on [0, 1].

@@ -216,7 +216,7 @@ class OrbitDifferentiator {
 
   /// Adds what the change of the event at the end of a piece does through the state there: there
   /// the transmission error is that of touching flanks, or the mesh force is 0. `off_motion`:
-  /// that of EventShift, by the phase of the event.
+  /// the result of EventShift::off_motion_by() for the event.
   void pass_event(std::size_t index, const EventShift::MiddleAndEnd& off_motion) {
     const OrbitPiece& p = orbit_.pieces[index];
     const bool touch = p.regime.side != orbit_.pieces[index + 1].regime.side;

@@ -24,8 +24,8 @@ struct RevisionRow {
 /// the name is empty.
 RevisionRow revision_row(const std::string& project, const std::string& revision);
 
-/// Names of revisions by their rows. Reads each row once: the simulations of a page have few
-/// revisions among them.
+/// Names of revisions by row. Each row is read once: the simulations of a page share a few
+/// revisions.
 class RevisionNames {
  public:
   explicit RevisionNames(Connection& db) : db_(db) {}
