@@ -1,28 +1,31 @@
 #pragma once
 
+#include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <string>
 
 #include "core/celsius.h"
 
 namespace tribodyn {
 
+/// As printf's "%.*g" in the C locale, with up to 17 digits.
+inline std::string general_text(double value, int digits) {
+  char text[32];
+  return {text,
+          std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr};
+}
+
 /// A number for the sentence of a Refusal: six significant digits, so that 1e-13 m2 does not read
 /// "0.000000" as std::to_string has it.
-inline std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
+inline std::string number_text(double value) { return general_text(value, 6); }
 
 /// A number rounded to so many significant digits, and no more of them printed.
 inline std::string number_text(double value, int digits) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.*e", digits - 1, value);
-  std::snprintf(text, sizeof text, "%.10g", std::strtod(text, nullptr));
-  return text;
+  const auto end =
+      std::to_chars(text, text + sizeof text, value, std::chars_format::scientific, digits - 1).ptr;
+  std::from_chars(text, end, value);
+  return general_text(value, 10);
 }
 
 /// "12.5 C" for a temperature [K].

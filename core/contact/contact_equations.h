@@ -196,6 +196,14 @@ SharedContact<Real> shared_contact(const ContactParametersOf<Real>& in,
   return out;
 }
 
+/// V_s = |U_1 - U_2| [m/s].
+template <class Real>
+Real sliding_speed(const ContactConditionsOf<Real>& k) {
+  const Real squared =
+      laws::square(k.velocity_1_x - k.velocity_2_x) + laws::square(k.velocity_1_y - k.velocity_2_y);
+  return squared > 0 ? laws::root(squared) : Real(0.0);
+}
+
 /// What heats and cools the contact.
 template <class Real>
 struct HeatedContact {
@@ -216,11 +224,9 @@ HeatedContact<Real> heated_contact(const ContactParametersOf<Real>& in,
                                    const ModelOptions& options, const ContactConditionsOf<Real>& k,
                                    const SharedContact<Real>& contact) {
   HeatedContact<Real> out;
-  const Real slide2 =
-      laws::square(k.velocity_1_x - k.velocity_2_x) + laws::square(k.velocity_1_y - k.velocity_2_y);
-  out.sliding_speed = slide2 > 0 ? laws::root(slide2) : Real(0.0);
-  out.shear_rate =
-      slide2 > 0 ? laws::shear_rate(out.sliding_speed, contact.film_thickness) : Real(0.0);
+  out.sliding_speed = sliding_speed(k);
+  const bool slides = out.sliding_speed > 0;
+  out.shear_rate = slides ? laws::shear_rate(out.sliding_speed, contact.film_thickness) : Real(0.0);
   out.boundary_friction =
       options.no_boundary_friction
           ? Real(0.0)
@@ -243,7 +249,7 @@ HeatedContact<Real> heated_contact(const ContactParametersOf<Real>& in,
   out.flash_resistance = laws::flash_resistance(out.film_conduction, contact.film_thickness,
                                                 out.conductance_1, out.conductance_2);
   out.temperature = {constants.inlet_temperature, Real(0.0)};
-  if (!options.isothermal && slide2 > 0) {
+  if (!options.isothermal && slides) {
     out.temperature = laws::contact_temperature(
         constants.inlet_temperature, out.flash_resistance * out.sliding_speed,
         out.boundary_friction, out.viscous_area,

@@ -230,10 +230,9 @@ double FlankContactModel::flash_temperature_rise(const ContactConditions& k, dou
                                                  double mean_shear_stress,
                                                  double contact_temperature) const {
   if (options_.isothermal) return 0;
-  const double slide = std::hypot(k.velocity_1_x - k.velocity_2_x, k.velocity_1_y - k.velocity_2_y);
   const double oil_rise =
-      mean_shear_stress *
-      laws::oil_rise_per_stress(slide, film_thickness, parameters_.lubricant.thermal_conductivity);
+      mean_shear_stress * laws::oil_rise_per_stress(sliding_speed(k), film_thickness,
+                                                    parameters_.lubricant.thermal_conductivity);
   return std::max(0.0, contact_temperature - constants_.inlet_temperature - oil_rise);
 }
 

@@ -5,10 +5,12 @@
 namespace tribodyn {
 
 SpecificSliding specific_sliding(const ContactConditionsOf<double>& k) {
-  const double slide = std::hypot(k.velocity_1_x - k.velocity_2_x, k.velocity_1_y - k.velocity_2_y);
+  const double slide = sliding_speed(k);
   if (slide == 0) return {};
-  return {slide / std::hypot(k.velocity_1_x, k.velocity_1_y),
-          slide / std::hypot(k.velocity_2_x, k.velocity_2_y)};
+  const auto over = [slide](double x, double y) {
+    return slide / std::sqrt(laws::square(x) + laws::square(y));
+  };
+  return {over(k.velocity_1_x, k.velocity_1_y), over(k.velocity_2_x, k.velocity_2_y)};
 }
 
 }  // namespace tribodyn

@@ -39,14 +39,14 @@ MultipleShooting::MultipleShooting(const PeriodicProblem& problem, OrbitFriction
              frozen_} {
   // The torque has a residual of its own: 0.
   for (int i = 0; i < kTorqueUnknown; ++i) per_scale_[i] = 1 / scale_(i);
-  end_.resize(kUnknowns, steps_);
+  end_.resize_for_overwrite(kUnknowns, steps_);
   change_.resize(kUnknowns * (steps_ + 1));
   duration_.resize(steps_);
-  response_.start.resize(kResponseRows, steps_ + 1);
-  response_.middle.resize(kResponseRows, steps_ + 1);
-  response_.rate.resize(kUnknowns, steps_ + 1);
-  frozen_.start.resize(kFrictionRows, steps_ + 1);
-  frozen_.middle.resize(kFrictionRows, steps_ + 1);
+  response_.start.resize_for_overwrite(kResponseRows, steps_ + 1);
+  response_.middle.resize_for_overwrite(kResponseRows, steps_ + 1);
+  response_.rate.resize_for_overwrite(kUnknowns, steps_ + 1);
+  frozen_.start.resize_for_overwrite(kFrictionRows, steps_ + 1);
+  frozen_.middle.resize_for_overwrite(kFrictionRows, steps_ + 1);
   if (orbit.pieces.empty()) {
     start_from_state();
   } else {

@@ -109,7 +109,7 @@ int OrbitFriction::gather(const MeshGrid& grid, const std::vector<OrbitPiece>& p
   samples_.resize(number_instants(pieces, first_));
   const std::size_t most = kFlankPairs * samples_.size();
   if (geometries_.size() < most) geometries_.resize(most);
-  gathered_.resize(kGatheredRows, most);
+  gathered_.resize_for_overwrite(kGatheredRows, most);
   Instant at;
   int n = 0, count = 0;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -230,7 +230,7 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
                              const CycleResponse& response, FrozenFriction& friction,
                              OrbitFigures& f) {
   const auto count = static_cast<int>(contacts.node.size());
-  gathered_.resize(kGatheredRows, contacts.node.size());
+  gathered_.resize_for_overwrite(kGatheredRows, contacts.node.size());
   gather_contact_conditions(instruction_set(), block, contacts, response, gathered_);
   if (!solve_contacts(contacts.geometries, count)) return false;
   const double* contact_friction = solved_->friction();

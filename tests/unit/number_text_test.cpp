@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <limits>
+#include <random>
 
 namespace tribodyn {
 namespace {
@@ -23,6 +28,26 @@ TEST(NumberText, WithoutAnUncertaintyIsSixDigits) {
   EXPECT_EQ(known_text(1.0 / 3, std::numeric_limits<double>::quiet_NaN()), "0.333333");
   EXPECT_EQ(known_text(0, 0.1), "0");
   EXPECT_EQ(known_text(1.0 / 3, 1e-12), "0.333333");
+}
+
+TEST(NumberText, IsWhatPrintfWrites) {
+  std::mt19937_64 random(3);
+  const auto printed = [](double value, int digits) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
+    return std::string(text);
+  };
+  for (int i = 0; i < 20'000; ++i) {
+    const auto value = std::bit_cast<double>(static_cast<std::uint64_t>(random()));
+    if (std::isnan(value)) continue;
+    const int digits = 1 + static_cast<int>(random() % 17);
+    ASSERT_EQ(general_text(value, digits), printed(value, digits));
+    ASSERT_EQ(number_text(value), printed(value, 6));
+  }
+  for (const double value : {0.0, -0.0, 1e6, 999999.5, 123456.5, 1e-5, 0.00012345650,
+                             std::numeric_limits<double>::infinity()}) {
+    EXPECT_EQ(number_text(value), printed(value, 6));
+  }
 }
 
 }  // namespace
