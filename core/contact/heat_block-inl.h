@@ -199,12 +199,11 @@ template <PressureGrowth Growth>
 HWY_INLINE void start_cut(const Tables& t, Work& work, int i) {
   constexpr Digits kHalf = Digits::kHalf;
   const Pack end = load(work.end + i);
-  const auto meeting = [&](Pack log_limit)
-                           HWY_ATTR { return least(Growth::depth_of(t, log_limit, work, i), end); };
-  const Pack cut = meeting(load(work.end_log_limit + i));
+  const auto depth = Growth::depth_function(t, work, i);
+  const Pack cut = least(depth.of(load(work.end_log_limit + i)), end);
   const Pack limit = limiting_shear_stress(t.shear.lubricant.limiting_shear_stress_at_zero_pressure,
                                            t.limit_slope, exponential<kHalf>(cut) - 1);
-  store(meeting(logarithm<kHalf>(limit)), work.cut + i);
+  store(least(depth.of(logarithm<kHalf>(limit)), end), work.cut + i);
 }
 
 /// Leaves what certify() makes the results of.
@@ -267,7 +266,9 @@ HWY_NOINLINE void eval_all(const Tables& t, const ActiveLanes& active, bool firs
     for (const int i : active) start_cut<Growth>(t, work, i);
   }
   for (const int i : active) eval_stress<Growth, kDigits>(t, work, i);
-  for (const int i : active) eval_ratio<kDigits>(t, work, i);
+  const int* lane = active.begin();
+  for (; active.end() - lane >= 2; lane += 2) eval_ratio<kDigits, 2>(t, lane, work);
+  if (lane != active.end()) eval_ratio<kDigits, 1>(t, lane, work);
 }
 
 /// kKept: solve_fine() does not follow.
