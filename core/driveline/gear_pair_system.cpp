@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/driveline/motion-inl.h"
+#include "core/driveline/gear_pair_motion.h"
 #include "core/gear/flank_motion-inl.h"
 #include "core/numerics/square.h"
 
@@ -30,29 +30,9 @@ GearPairSystem::GearPairSystem(const MeshData& mesh, const DrivelineDynamics& dy
                  .cycle_angle = 2 * std::numbers::pi / mesh.pinion_teeth()},
       lag_per_approach_(mesh.gear_teeth() / mesh.mean_gear_contact_radius()) {}
 
-HWY_INLINE void GearPairSystem::set_kinematics(const MeshPhase& phase, const ContactRegime& regime,
-                                               const double* y, Mechanics& out) const {
-  // N_g phi_g = N_p phi_p - N_g (mesh approach)/R_g0, because R_g0 N_p = R_p0 N_g.
-  out.mesh = mesh_.functions(phase, lag_per_approach_ * y[kMeshApproach]);
-  HWY_NAMESPACE::set_mesh_force(constants_, regime.side, y, out);
-  if (regime.side != 0) return;
-  if (options_.damping_in_contact_only) out.damper_force = 0;
-  out.deflection = 0;
-  out.mesh_force = out.damper_force;
-}
-
 void GearPairSystem::kinematics(const MeshPhase& phase, const ContactRegime& regime,
                                 const double* y, Mechanics& out) const {
   set_kinematics(phase, regime, y, out);
-}
-
-HWY_INLINE void GearPairSystem::set_mechanics(const MeshPhase& phase, const ContactRegime& regime,
-                                              const double* y, Mechanics& out) const {
-  set_kinematics(phase, regime, y, out);
-  const auto shaft = HWY_NAMESPACE::shaft_torques(constants_, y);
-  out.pinion_shaft_torque = shaft.pinion;
-  out.gear_shaft_torque = shaft.gear;
-  out.pinion_friction_torque = out.gear_friction_torque = out.loss_power = 0;
 }
 
 void GearPairSystem::mechanics(const MeshPhase& phase, const ContactRegime& regime, const double* y,
@@ -68,17 +48,6 @@ void GearPairSystem::motion(const double* y, const Mechanics& at, const Torques&
 
 double GearPairSystem::parametric_torque(const Mechanics& at) {
   return HWY_NAMESPACE::parametric_torque(at);
-}
-
-void GearPairSystem::motion(const MeshPhase& phase, const ContactRegime& regime, const double* y,
-                            const FrictionArms& friction, const Torques& torques, Mechanics& at,
-                            double* dy) const {
-  set_mechanics(phase, regime, y, at);
-  const double load = regime.load(at.mesh_force);
-  at.pinion_friction_torque = friction.pinion * load;
-  at.gear_friction_torque = friction.gear * load;
-  HWY_NAMESPACE::motion(constants_, options_.energy_consistent, y, at, torques.pinion,
-                        torques.wheel, dy);
 }
 
 void GearPairSystem::slopes(const MeshPhase& phase, const ContactRegime& regime, const double* y,

@@ -138,10 +138,11 @@ class GearPairSystem {
   /// d state / d phase of time and the seven states of motion.
   void motion(const double* state, const Mechanics& at, const Torques& torques,
               double* derivative) const;
-  /// Sets `at` to the mechanics under given friction arms, and the derivative of that motion.
-  void motion(const MeshPhase& phase, const ContactRegime& regime, const double* state,
-              const FrictionArms& friction, const Torques& torques, Mechanics& at,
-              double* derivative) const;
+  /// Sets `at` to the mechanics under given friction arms, and the derivative of that motion. For
+  /// callers that include driveline/gear_pair_motion.h.
+  inline void motion(const MeshPhase& phase, const ContactRegime& regime, const double* state,
+                     const FrictionArms& friction, const Torques& torques, Mechanics& at,
+                     double* derivative) const;
   /// Derivatives of that motion, exact, with the friction arms held. `at` and `derivative`: as
   /// motion() has set them.
   void slopes(const MeshPhase& phase, const ContactRegime& regime, const double* state,
@@ -183,9 +184,7 @@ class GearPairSystem {
   const MotionConstants& constants() const { return constants_; }
 
  private:
-  // The bodies of kinematics() and mechanics(), for motion() and events() to inline: a point whose
-  // flanks part then takes about 0.96 of the time (median over three speeds of 67.5 to 80 km/h and
-  // five tolerances of 5e-3 to 1e-5; least times of two runs).
+  // The bodies of kinematics() and mechanics(), in driveline/gear_pair_motion.h.
   inline void set_kinematics(const MeshPhase& phase, const ContactRegime& regime,
                              const double* state, Mechanics& out) const;
   inline void set_mechanics(const MeshPhase& phase, const ContactRegime& regime,

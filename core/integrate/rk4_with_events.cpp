@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/driveline/gear_pair_motion.h"
 #include "core/integrate/runge_kutta.h"
 #include "core/numerics/bracketed_root.h"
 

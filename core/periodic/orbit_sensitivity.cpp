@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "core/driveline/gear_pair_motion.h"
 #include "core/integrate/mesh_cycle_march.h"
 #include "core/integrate/piece_adjoint.h"
 #include "core/integrate/runge_kutta.h"
