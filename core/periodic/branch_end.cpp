@@ -22,8 +22,8 @@ bool of_one_kind(const BranchPoint& a, const BranchPoint& b) {
 
 // The constants below were varied over the sweeps of core/README.md.
 
-// Distance of swings, relative, up to which two responses are on one branch. With 0.05 the sweeps
-// report the same ends, with 0.2 the one at 155.8 km/h, where the period doubles, is missed.
+// Distance of swings, relative, up to which two responses are on one branch. With 0.02 and 0.3 the
+// sweeps report the same ends, with 0.4 the one at 71.4 km/h is missed.
 constexpr double kSameBranchDistance = 0.1;
 // Not critical: with 0.15 and 0.6 the sweeps report the same ends.
 constexpr double kSwingDifferenceOfBranches = 0.3;  // relative
@@ -56,9 +56,9 @@ bool narrow_at(double speed, const SolveOnBranch& solve, Bracket& bracket) {
   }
   bracket.cycles_left -= found->marched_cycles;
   const double first = distance(bracket.before, *found), second = distance(*found, bracket.beyond);
-  if (found->settled && of_one_kind(bracket.before, bracket.beyond) &&
+  if (found->settled && bracket.before.state.period == bracket.beyond.state.period &&
       std::max(first, second) < kSameBranchDistance) {
-    return false;
+    return false;  // also where flanks part at one end only: they begin to part without a jump
   }
   if (found->settled && is_on_branch(bracket, *found)) {
     bracket.before = *found;

@@ -23,21 +23,25 @@ BranchPoint on_branch(const PointResult& r) {
 }
 
 /// Solves between two neighbours of a sweep with the options of the sweep, but loosely and without
-/// what only its own points have.
-BranchSolver branch_solver(PreparedScene& scene, double ascent_angle, PointOptions options) {
+/// what only its own points have. Adds to `contact_solutions`; keeps the references.
+BranchSolver branch_solver(PreparedScene& scene, double ascent_angle, PointOptions options,
+                           long& contact_solutions) {
   options.maximum_mesh_cycles = std::min(options.maximum_mesh_cycles, kMostBranchCycles);
   options.tolerance = std::max(options.tolerance, kBranchTolerance);
   options.history = {};
   options.probe_coexisting_response = false;
   options.sensitivities = false;
-  const auto solve_by = [&scene, ascent_angle, options](SteadyStateMethod method) -> SolveOnBranch {
-    return [&scene, ascent_angle, options, method](
+  const auto solve_by = [&scene, &contact_solutions, ascent_angle,
+                         options](SteadyStateMethod method) -> SolveOnBranch {
+    return [&scene, &contact_solutions, ascent_angle, options, method](
                double speed, const BranchPoint& from) -> std::optional<BranchPoint> {
       PointOptions here = options;
       here.method = method;
       here.carried_state = from.state;
       try {
-        return on_branch(solve_prepared_point(scene, cruise(speed, ascent_angle), here));
+        const PointResult r = solve_prepared_point(scene, cruise(speed, ascent_angle), here);
+        contact_solutions += r.statistics.contact_solutions;
+        return on_branch(r);
       } catch (const Refusal&) {
         return std::nullopt;
       }
@@ -86,8 +90,9 @@ std::vector<SweepPoint> sweep_speed(const Scene& scene, std::vector<double> vehi
       if (follows && !out.empty() && out.back().result) {
         const BranchPoint before = on_branch(*out.back().result), after = on_branch(*next.result);
         if (may_be_branches(before, after)) {
-          next.branch_end =
-              find_branch_end(before, after, branch_solver(*prepared, ascent_angle, point));
+          next.branch_end = find_branch_end(
+              before, after,
+              branch_solver(*prepared, ascent_angle, point, next.contact_solutions_of_search));
         }
       }
     } catch (const Refusal& refusal) {

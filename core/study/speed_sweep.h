@@ -32,6 +32,9 @@ struct SweepPoint {
   std::string refusal_reason;  ///< when there is no result
   std::string refusal_sentence;
   std::optional<BranchEnd> branch_end;  ///< on the way here from the point before
+  /// Contacts solved while the end of a branch was looked for on that way; without those of
+  /// solutions that were refused.
+  long contact_solutions_of_search = 0;
 };
 
 /// Cruise points over `vehicle_speeds` [m/s]: natural-parameter continuation in the order of the

@@ -118,16 +118,37 @@ double seconds_of_contact_figures(const std::vector<Scene>& scenes) {
   return (seconds[1] - seconds[0]) / static_cast<double>(points);
 }
 
-/// How friction is evaluated: so many contacts at a time.
-struct Evaluation {
+/// So many evaluations of friction on so many contacts each.
+struct Evaluations {
   std::size_t contacts;
+  int count;
+};
+/// How friction is evaluated.
+struct Evaluation {
+  std::vector<Evaluations> evaluations;
   Digits digits;
   bool all_figures;
 };
 /// The unit of what a point takes.
-constexpr Evaluation kBatch{256, Digits::kFull, false};
-/// As the orbits of a sweep have it at this tolerance, on which some 65 contacts lie.
-constexpr Evaluation kOfSweep{64, Digits::kHalf, true};
+const Evaluation kBatch{{{256, 1}}, Digits::kFull, false};
+/// As the sweep has it: its evaluations, counted by their contacts, without sizes that have less
+/// than a hundredth of all contacts.
+const Evaluation kOfSweep{{{18, 277},
+                           {26, 74},
+                           {34, 317},
+                           {50, 120},
+                           {54, 305},
+                           {65, 53},
+                           {81, 106},
+                           {97, 49},
+                           {106, 100},
+                           {147, 10},
+                           {161, 59},
+                           {209, 26},
+                           {461, 3},
+                           {765, 4}},
+                          Digits::kHalf,
+                          true};
 
 /// Processor time of a contact of the reference gear set [s].
 double seconds_per_evaluation(const Evaluation& evaluation) {
@@ -137,23 +158,26 @@ double seconds_per_evaluation(const Evaluation& evaluation) {
     const auto more = realistic_contacts(scene, speed, 40).conditions;
     conditions.insert(conditions.end(), more.begin(), more.end());
   }
-  conditions.resize(conditions.size() / 256 * 256);
   ContactArrays arrays(conditions, scene.solid, scene.options);
   const FlankContactBatch batch(contact_model(scene));
-  constexpr int kRounds = 40;
+  constexpr std::size_t kLeastContacts = 100'000;
+  std::size_t solved = 0, first = 0;
   const double start = processor_seconds();
-  for (int round = 0; round < kRounds; ++round) {
-    for (std::size_t first = 0; first < arrays.size(); first += evaluation.contacts) {
-      batch.solve(arrays.geometries(), first, evaluation.contacts, arrays.conditions(first),
-                  evaluation.all_figures ? arrays.results(first) : arrays.friction(first),
-                  evaluation.digits);
+  while (solved < kLeastContacts) {
+    for (const Evaluations& each : evaluation.evaluations) {
+      for (int n = 0; n < each.count; ++n) {
+        if (first + each.contacts > arrays.size()) first = 0;
+        batch.solve(arrays.geometries(), first, each.contacts, arrays.conditions(first),
+                    evaluation.all_figures ? arrays.results(first) : arrays.friction(first),
+                    evaluation.digits);
+        first += each.contacts;
+        solved += each.contacts;
+      }
     }
   }
-  return (processor_seconds() - start) / (static_cast<double>(arrays.size()) * kRounds);
+  return (processor_seconds() - start) / static_cast<double>(solved);
 }
 
-/// Counts the evaluations of the curve's points; those of the search for the ends of branches, a
-/// seventh more, are not known.
 Work sweep() {
   const Scene scene = reference_scene();
   std::vector<double> speeds;
@@ -165,7 +189,7 @@ Work sweep() {
     options.direction = direction;
     for (const SweepPoint& at : sweep_speed(scene, speeds, 0, options)) {
       ++out.points;
-      out.contacts += at.result->statistics.contact_solutions;
+      out.contacts += at.result->statistics.contact_solutions + at.contact_solutions_of_search;
       out.marched += at.result->method == SteadyStateMethod::kMarch;
     }
   }

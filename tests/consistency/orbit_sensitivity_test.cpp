@@ -470,6 +470,8 @@ TEST(SweepSensitivities, AreThoseOfEachSideOfAJumpAndMoveNoEndOfABranch) {
   EXPECT_EQ(curve[2].branch_end->followed_to, plain[2].branch_end->followed_to);
   EXPECT_EQ(curve[2].branch_end->gone_at, plain[2].branch_end->gone_at);
   EXPECT_FALSE(curve[1].branch_end);
+  EXPECT_GT(plain[2].contact_solutions_of_search, 0);
+  EXPECT_EQ(plain[1].contact_solutions_of_search, 0);
   for (std::size_t i = 0; i < speeds.size(); ++i) {
     ASSERT_TRUE(curve[i].result && curve[i].result->sensitivities) << i;
     EXPECT_EQ(curve[i].result->contact_loss, i == 2) << "quiet before the jump, loud after it";

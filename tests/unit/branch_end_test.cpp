@@ -74,6 +74,22 @@ TEST(BranchEnd, ASteepBranchHasNoEnd) {
   EXPECT_FALSE(find_branch_end(steep(5), steep(8), {solve, solve}));
 }
 
+TEST(BranchEnd, OneSolutionShowsThatFlanksBeginToPartWithoutAJump) {
+  int calls = 0;
+  const auto grazing = [](double speed) {
+    BranchPoint out = response(speed, 20 + speed);
+    out.state.contact_loss = speed > 6.3;
+    return out;
+  };
+  const SolveOnBranch solve = [&](double speed, const BranchPoint&) {
+    ++calls;
+    return grazing(speed);
+  };
+  EXPECT_FALSE(find_branch_end(grazing(5), grazing(8), {solve, solve}));
+  EXPECT_FALSE(find_branch_end(grazing(8), grazing(5), {solve, solve}));
+  EXPECT_EQ(calls, 2);
+}
+
 TEST(BranchEnd, MarchingDecidesWhereShootingFindsNothing) {
   Hysteresis model{6.5};
   const SolveOnBranch shooting = [&](double speed, const BranchPoint& from) {
