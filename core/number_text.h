@@ -24,7 +24,7 @@ inline std::string number_text(double value, int digits) {
   char text[32];
   const auto end =
       std::to_chars(text, text + sizeof text, value, std::chars_format::scientific, digits - 1).ptr;
-  std::from_chars(text, end, value);
+  std::from_chars(text, end, value);  // leaves it where its rounded value overflows
   return general_text(value, 10);
 }
 

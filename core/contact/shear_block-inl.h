@@ -179,9 +179,9 @@ HWY_INLINE void eval_stress(const Tables& t, Work& work, int i) {
   store(exponential<kDigits>(clamped(log_value, -600, 100)), work.stress + i);
 }
 
-/// R and its slope in L, of kPacks packs, which begin at the given lanes. (Two packs load each
-/// coefficient once, and their chains of dependent instructions overlap: contacts then take 0.98 of
-/// the time with AVX2.)
+/// R and its slope in L, of kPacks packs, which begin at the given lanes. (For two packs each
+/// coefficient is loaded once, and their chains of dependent instructions overlap: a contact then
+/// takes 0.98 of the time with AVX2.)
 template <Digits kDigits, int kPacks>
 HWY_INLINE void eval_ratio(const Tables& t, const int* lane, Work& work) {
   const BivariatePolynomial& r = kDigits == Digits::kFull ? t.ratio : t.coarse_ratio;

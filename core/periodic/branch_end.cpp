@@ -58,7 +58,7 @@ bool narrow_at(double speed, const SolveOnBranch& solve, Bracket& bracket) {
   const double first = distance(bracket.before, *found), second = distance(*found, bracket.beyond);
   if (found->settled && bracket.before.state.period == bracket.beyond.state.period &&
       std::max(first, second) < kSameBranchDistance) {
-    return false;  // also where flanks part at one end only: they begin to part without a jump
+    return false;  // also if flanks part in one of the two only: they begin to part without a jump
   }
   if (found->settled && is_on_branch(bracket, *found)) {
     bracket.before = *found;

@@ -55,9 +55,9 @@ bool may_be_branches(const BranchPoint& a, const BranchPoint& b);
 ///     up, there is no jump; otherwise it lies between the last two speeds.
 ///  2. Shooting bisects first. Where it finds nothing, as near a fold or a period doubling, the
 ///     other branch is followed to there, or some hundred mesh cycles are marched at a speed.
-/// A branch that is left and found again between the neighbours is not noticed. By shooting alone
-/// an end is found only if shooting finds the branch beyond it. Returns nullopt if no branch ends,
-/// and one of several ends.
+/// A branch that is left and found again between the neighbours is not noticed, nor is a jump by
+/// some 10 % of the swing. By shooting alone an end is found only if shooting finds the branch
+/// beyond it. Returns nullopt if no branch ends, and one of several ends.
 std::optional<BranchEnd> find_branch_end(const BranchPoint& before, const BranchPoint& after,
                                          const BranchSolver& solver);
 

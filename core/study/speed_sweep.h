@@ -32,8 +32,8 @@ struct SweepPoint {
   std::string refusal_reason;  ///< when there is no result
   std::string refusal_sentence;
   std::optional<BranchEnd> branch_end;  ///< on the way here from the point before
-  /// Contacts solved while the end of a branch was looked for on that way; without those of
-  /// solutions that were refused.
+  /// Contacts solved in the search for that end, whether or not one was found; those of refused
+  /// solutions are not counted.
   long contact_solutions_of_search = 0;
 };
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -88,6 +89,26 @@ TEST(BranchEnd, OneSolutionShowsThatFlanksBeginToPartWithoutAJump) {
   EXPECT_FALSE(find_branch_end(grazing(5), grazing(8), {solve, solve}));
   EXPECT_FALSE(find_branch_end(grazing(8), grazing(5), {solve, solve}));
   EXPECT_EQ(calls, 2);
+}
+
+TEST(BranchEnd, AJumpWithWhichFlanksPartIsLocatedWhereverItLies) {
+  // A jump by 12 % of the wider swing.
+  for (const double fold : {5.3, 6.45, 6.55, 7.7}) {
+    const SolveOnBranch solve = [&](double speed,
+                                    const BranchPoint&) -> std::optional<BranchPoint> {
+      BranchPoint out = response(speed, speed > fold ? 10 : 8.8);
+      out.state.contact_loss = speed > fold;
+      return out;
+    };
+    const BranchPoint quiet = *solve(5, {}), loud = *solve(8, {});
+    for (const bool up : {true, false}) {
+      const auto end = find_branch_end(up ? quiet : loud, up ? loud : quiet, {solve, solve});
+      ASSERT_TRUE(end) << fold;
+      EXPECT_LE(std::abs(end->gone_at - end->followed_to), 1.001 * kResolution);
+      EXPECT_LE(std::min(end->gone_at, end->followed_to), fold);
+      EXPECT_GE(std::max(end->gone_at, end->followed_to), fold);
+    }
+  }
 }
 
 TEST(BranchEnd, MarchingDecidesWhereShootingFindsNothing) {
