@@ -13,7 +13,7 @@ struct Work {
 };
 
 constexpr double kPreparationSeconds = 0.26e-3;  // [s] for each scene
-// Of a point by shooting, also screened. Measured: 2 to 4.4, where flanks part 1.5 to 2.7, at
+// Of a point by shooting, also screened. Measured: 2 to 3.5, where flanks part 1.4 to 2.8, at
 // tolerances of 1e-5 to 1e-3.
 constexpr double kSensitivityFactor = 2.5;
 constexpr double kContactFiguresFactor = 1.4;  // of a screened point (measured)
