@@ -8,7 +8,7 @@
 
 namespace tribodyn {
 
-/// As printf's "%.*g" in the C locale, with up to 17 digits.
+/// Returns what printf writes for "%.*g" in the C locale. `digits`: 1 to 17.
 inline std::string general_text(double value, int digits) {
   char text[32];
   return {text,
@@ -24,7 +24,7 @@ inline std::string number_text(double value, int digits) {
   char text[32];
   const auto end =
       std::to_chars(text, text + sizeof text, value, std::chars_format::scientific, digits - 1).ptr;
-  std::from_chars(text, end, value);  // leaves it where its rounded value overflows
+  std::from_chars(text, end, value);  // `value` stays as it is if the rounded number overflows
   return general_text(value, 10);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Functions of GearPairSystem that are inlined where it is integrated.
+// Bodies of the functions of GearPairSystem that integrators inline.
 
 #include <algorithm>
 #include <array>

@@ -138,8 +138,8 @@ class GearPairSystem {
   /// d state / d phase of time and the seven states of motion.
   void motion(const double* state, const Mechanics& at, const Torques& torques,
               double* derivative) const;
-  /// Sets `at` to the mechanics under given friction arms, and the derivative of that motion. For
-  /// callers that include driveline/gear_pair_motion.h.
+  /// Sets `at` to the mechanics under given friction arms, and the derivative of that motion.
+  /// Callers include driveline/gear_pair_motion.h.
   inline void motion(const MeshPhase& phase, const ContactRegime& regime, const double* state,
                      const FrictionArms& friction, const Torques& torques, Mechanics& at,
                      double* derivative) const;

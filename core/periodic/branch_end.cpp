@@ -58,7 +58,8 @@ bool narrow_at(double speed, const SolveOnBranch& solve, Bracket& bracket) {
   const double first = distance(bracket.before, *found), second = distance(*found, bracket.beyond);
   if (found->settled && bracket.before.state.period == bracket.beyond.state.period &&
       std::max(first, second) < kSameBranchDistance) {
-    return false;  // also if flanks part in one of the two only: they begin to part without a jump
+    // Contact loss in one of the two responses only is no jump either: flanks begin to part.
+    return false;
   }
   if (found->settled && is_on_branch(bracket, *found)) {
     bracket.before = *found;

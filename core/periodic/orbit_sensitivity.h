@@ -34,8 +34,8 @@
 // kinks of the response at six of them, and the differences then err by up to 4e-5.) At 100 random
 // points with impacts they agree within 2.5e-4 on 192 steps a cycle (relative steps of 2e-5 and
 // 1e-5); on 96 steps within 1e-4 but for one point near a resonance, where the elasticity of -2.18
-// by the mean speed errs by 2e-3, and the grid itself by 7e-2. All derivatives together take 2
-// to 2.75 times as long as the figures of a smooth point at the usual tolerance, and 0.6 to 1.2
+// by the mean speed errs by 2e-3, and the grid itself by 7e-2. All derivatives together take 1.6
+// to 2.75 times as long as the figures of a smooth point at the usual tolerance, and 0.6 to 1.3
 // times as long as those of a point with impacts (20 to 140 km/h, Roelands's law, AVX2, medians of
 // 200 pairs).
 

@@ -25,8 +25,8 @@ bool set_labels(Connection& db, std::int64_t id, const std::string& before,
 /// damaged.
 std::int64_t ledger_row(Connection& db, const std::string& body);
 
-/// What the columns of revisions hold: names, for a statement that reads one simulation, or rows,
-/// for a page, whose names RevisionNames looks up.
+/// What a column of a revision holds: its name in statements that read one simulation, its row in
+/// statements that read a page. RevisionNames turns the rows of a page into names.
 enum class RevisionColumns { kNames, kRows };
 /// Returns the columns of stored_simulation(), to be followed by the rest of a SELECT over
 /// simulations.

@@ -182,6 +182,7 @@ double seconds_per_evaluation(const Evaluation& evaluation) {
   return (processor_seconds() - start) / static_cast<double>(solved);
 }
 
+/// The contacts of the search for ends of branches count too, but for those of refused solutions.
 Work sweep() {
   const Scene scene = reference_scene();
   std::vector<double> speeds;
