@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "client/cpp/plot/comparison_plot.h"
-#include "client/cpp/plot/curve_plot.h"
-#include "client/cpp/plot/explanation_plot.h"
+#include "client/cpp/report/comparison_plot.h"
+#include "client/cpp/report/curve_plot.h"
 #include "client/cpp/report/curve_report.h"
+#include "client/cpp/report/explanation_plot.h"
 #include "client/cpp/report/explanation_report.h"
 #include "client/cpp/report/report_page.h"
 #include "client/cpp/report/sensitivity_report.h"

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "client/cpp/commands/flags.h"
 #include "client/cpp/failure.h"
 #include "client/cpp/library/status.h"
+#include "client/cpp/text/flags.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 

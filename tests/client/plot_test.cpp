@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "client/cpp/failure.h"
-#include "client/cpp/plot/curve_plot.h"
-#include "client/cpp/plot/history_plot.h"
 #include "client/cpp/plot/map_plot.h"
 #include "client/cpp/plot/panel.h"
 #include "client/cpp/plot/svg.h"
+#include "client/cpp/report/curve_plot.h"
+#include "client/cpp/report/history_plot.h"
 #include "client/cpp/report/rig_rows.h"
 #include "client/cpp/report/spectrum_report.h"
 #include "client/cpp/report/variant_report.h"

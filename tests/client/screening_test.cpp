@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "client/cpp/failure.h"
-#include "client/cpp/plot/screening_plot.h"
 #include "client/cpp/report/screening_decisions.h"
+#include "client/cpp/report/screening_plot.h"
 #include "client/cpp/report/screening_report.h"
 #include "client/cpp/service/screening_campaign.h"
 #include "client/cpp/text/csv.h"

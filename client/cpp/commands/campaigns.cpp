@@ -7,7 +7,6 @@
 #include "client/cpp/commands/label_filter.h"
 #include "client/cpp/report/campaign_report.h"
 #include "client/cpp/report/screening.h"
-#include "client/cpp/service/campaign_run.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {

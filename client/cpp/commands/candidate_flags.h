@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "client/cpp/commands/flags.h"
+#include "client/cpp/text/flags.h"
 #include "tribodyn/v1/campaigns.pb.h"
 
 namespace tribodyn::client {

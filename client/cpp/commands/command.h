@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "client/cpp/commands/flag_errors.h"
-#include "client/cpp/commands/flags.h"
 #include "client/cpp/failure.h"
 #include "client/cpp/text/colour.h"
+#include "client/cpp/text/flags.h"
 #include "client/cpp/text/output.h"
 #include "client/cpp/text/progress.h"
 #include "tribodyn/client/connection.h"

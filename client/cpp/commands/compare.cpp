@@ -4,7 +4,7 @@
 #include "client/cpp/commands/condition_flags.h"
 #include "client/cpp/commands/result_files.h"
 #include "client/cpp/commands/scenario.h"
-#include "client/cpp/plot/comparison_plot.h"
+#include "client/cpp/report/comparison_plot.h"
 #include "client/cpp/report/comparison_report.h"
 #include "client/cpp/text/text.h"
 #include "tribodyn/v1/points.pb.h"

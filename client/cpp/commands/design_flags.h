@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "client/cpp/commands/flags.h"
+#include "client/cpp/text/flags.h"
 #include "core/decisions/design.h"
 #include "tribodyn/v1/campaigns.pb.h"
 

@@ -5,7 +5,7 @@
 #include "client/cpp/commands/condition_flags.h"
 #include "client/cpp/commands/result_files.h"
 #include "client/cpp/commands/scenario.h"
-#include "client/cpp/plot/explanation_plot.h"
+#include "client/cpp/report/explanation_plot.h"
 #include "client/cpp/report/explanation_report.h"
 #include "client/cpp/text/text.h"
 #include "tribodyn/v1/points.pb.h"

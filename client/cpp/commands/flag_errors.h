@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "client/cpp/commands/flags.h"
+#include "client/cpp/text/flags.h"
 #include "tribodyn/client/error.h"
 
 namespace tribodyn::client {

@@ -5,10 +5,10 @@
 #include "client/cpp/commands/operating_point.h"
 #include "client/cpp/commands/result_files.h"
 #include "client/cpp/commands/scenario.h"
-#include "client/cpp/plot/history_plot.h"
 #include "client/cpp/report/history_file.h"
+#include "client/cpp/report/history_plot.h"
 #include "client/cpp/report/history_report.h"
-#include "client/cpp/report/inputs.h"
+#include "client/cpp/text/inputs.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {

@@ -6,12 +6,12 @@
 #include "client/cpp/commands/label_filter.h"
 #include "client/cpp/commands/scenario.h"
 #include "client/cpp/commands/show_results.h"
-#include "client/cpp/report/inputs.h"
 #include "client/cpp/report/results.h"
 #include "client/cpp/resources/kind.h"
 #include "client/cpp/service/follow.h"
 #include "client/cpp/service/interrupt.h"
 #include "client/cpp/text/csv.h"
+#include "client/cpp/text/inputs.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
 

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "client/cpp/commands/flags.h"
 #include "client/cpp/commands/rig_map.h"
+#include "client/cpp/text/flags.h"
 #include "tribodyn/v1/rigs.pb.h"
 
 namespace tribodyn::client {

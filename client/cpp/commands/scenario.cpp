@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <iostream>
 
-#include "client/cpp/report/inputs.h"
 #include "client/cpp/service/follow.h"
 #include "client/cpp/service/interrupt.h"
+#include "client/cpp/text/inputs.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {

@@ -1,8 +1,8 @@
 #include <iostream>
 
 #include "client/cpp/commands/screen_run.h"
+#include "client/cpp/report/campaign_report.h"
 #include "client/cpp/report/screening.h"
-#include "client/cpp/service/campaign_run.h"
 #include "client/cpp/service/follow.h"
 #include "client/cpp/service/screening_campaign.h"
 #include "client/cpp/text/text.h"

@@ -4,7 +4,7 @@
 
 #include "client/cpp/paper/figure.h"
 #include "client/cpp/paper/variants.h"
-#include "client/cpp/plot/curve_plot.h"
+#include "client/cpp/report/curve_plot.h"
 #include "client/cpp/text/units.h"
 
 namespace tribodyn::client {

@@ -6,8 +6,8 @@
 #include "client/cpp/plot/footer.h"
 #include "client/cpp/plot/svg.h"
 #include "client/cpp/report/html.h"
-#include "client/cpp/report/inputs.h"
 #include "client/cpp/text/csv.h"
+#include "client/cpp/text/inputs.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {

@@ -6,9 +6,9 @@
 #include <set>
 #include <utility>
 
-#include "client/cpp/report/inputs.h"
-#include "client/cpp/report/warnings.h"
+#include "client/cpp/text/inputs.h"
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/warnings.h"
 
 namespace tribodyn::client {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "client/cpp/report/screening.h"
 #include "client/cpp/resources/json_input.h"
-#include "client/cpp/service/campaign_run.h"
 #include "client/cpp/text/csv.h"
+#include "client/cpp/text/progress.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
 #include "tribodyn/client/connection.h"
@@ -120,6 +120,28 @@ std::string campaign_sheet(const v1::Campaign& campaign) {
 }
 
 }  // namespace
+
+std::string state_text(v1::Campaign::State state) {
+  switch (state) {
+    case v1::Campaign::RUNNING:
+      return "running";
+    case v1::Campaign::PAUSED:
+      return "paused";
+    case v1::Campaign::SUCCEEDED:
+      return "succeeded";
+    case v1::Campaign::FAILED:
+      return "failed";
+    case v1::Campaign::CANCELLED:
+      return "cancelled";
+    default:
+      return "unknown state";
+  }
+}
+
+std::string points_text(const v1::Campaign& campaign) {
+  return std::to_string(campaign.points_done()) + " of " + std::to_string(campaign.points()) +
+         " points";
+}
 
 std::string campaigns_text(const std::vector<v1::Campaign>& campaigns, OutputFormat format) {
   if (format == OutputFormat::kTable) return campaigns_table(campaigns);

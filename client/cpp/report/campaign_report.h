@@ -8,6 +8,12 @@
 
 namespace tribodyn::client {
 
+/// Returns "running", "paused", "succeeded", ...
+std::string state_text(v1::Campaign::State state);
+
+/// Returns e.g. "12000 of 39000 points".
+std::string points_text(const v1::Campaign& campaign);
+
 /// Returns campaigns as a table of one row each, as CSV or as JSON.
 std::string campaigns_text(const std::vector<v1::Campaign>& campaigns, OutputFormat format);
 

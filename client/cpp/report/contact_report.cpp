@@ -6,7 +6,7 @@
 #include <string>
 
 #include "client/cpp/report/comparison_report.h"
-#include "client/cpp/report/inputs.h"
+#include "client/cpp/text/inputs.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"

@@ -8,10 +8,10 @@
 #include <optional>
 #include <vector>
 
-#include "client/cpp/report/inputs.h"
 #include "client/cpp/report/resource_report.h"
 #include "client/cpp/resources/edits.h"
 #include "client/cpp/text/csv.h"
+#include "client/cpp/text/inputs.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"

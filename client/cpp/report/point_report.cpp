@@ -4,13 +4,13 @@
 #include <cmath>
 #include <string>
 
-#include "client/cpp/report/inputs.h"
 #include "client/cpp/report/limits_report.h"
 #include "client/cpp/report/precision.h"
-#include "client/cpp/report/warnings.h"
+#include "client/cpp/text/inputs.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
+#include "client/cpp/text/warnings.h"
 
 namespace tribodyn::client {
 namespace {

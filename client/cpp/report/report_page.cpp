@@ -2,15 +2,15 @@
 
 #include <cmath>
 
-#include "client/cpp/plot/curve_plot.h"
-#include "client/cpp/plot/explanation_plot.h"
 #include "client/cpp/plot/svg.h"
 #include "client/cpp/report/comparison_report.h"
+#include "client/cpp/report/curve_plot.h"
 #include "client/cpp/report/curve_report.h"
+#include "client/cpp/report/explanation_plot.h"
 #include "client/cpp/report/explanation_report.h"
 #include "client/cpp/report/html.h"
-#include "client/cpp/report/inputs.h"
 #include "client/cpp/report/resource_report.h"
+#include "client/cpp/text/inputs.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {

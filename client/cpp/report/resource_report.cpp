@@ -10,10 +10,10 @@
 #include <set>
 
 #include "client/cpp/failure.h"
-#include "client/cpp/report/inputs.h"
 #include "client/cpp/resources/edits.h"
 #include "client/cpp/text/colour.h"
 #include "client/cpp/text/csv.h"
+#include "client/cpp/text/inputs.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"

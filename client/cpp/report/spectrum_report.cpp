@@ -4,11 +4,11 @@
 #include <limits>
 
 #include "client/cpp/plot/footer.h"
-#include "client/cpp/plot/history_plot.h"
 #include "client/cpp/plot/panel.h"
-#include "client/cpp/report/inputs.h"
+#include "client/cpp/report/history_plot.h"
 #include "client/cpp/report/results.h"
 #include "client/cpp/text/csv.h"
+#include "client/cpp/text/inputs.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
 

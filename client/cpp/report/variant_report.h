@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "client/cpp/report/inputs.h"
+#include "client/cpp/text/inputs.h"
 #include "tribodyn/v1/simulations.pb.h"
 
 namespace tribodyn::client {

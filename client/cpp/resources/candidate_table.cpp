@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "client/cpp/failure.h"
-#include "client/cpp/report/inputs.h"
 #include "client/cpp/resources/edits.h"
 #include "client/cpp/resources/row_table.h"
+#include "client/cpp/text/inputs.h"
 #include "client/cpp/text/nearest.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"

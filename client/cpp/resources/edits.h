@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "client/cpp/commands/flags.h"
 #include "client/cpp/resources/kind.h"
+#include "client/cpp/text/flags.h"
 
 namespace tribodyn::client {
 

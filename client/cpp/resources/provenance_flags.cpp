@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "client/cpp/report/inputs.h"
 #include "client/cpp/resources/edits.h"
+#include "client/cpp/text/inputs.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
 

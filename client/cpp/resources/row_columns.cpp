@@ -9,9 +9,9 @@
 #include <map>
 #include <set>
 
-#include "client/cpp/report/inputs.h"
 #include "client/cpp/resources/edits.h"
 #include "client/cpp/resources/measurement_cells.h"
+#include "client/cpp/text/inputs.h"
 #include "client/cpp/text/nearest.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"

@@ -7,6 +7,7 @@
 #include <stop_token>
 
 #include "client/cpp/failure.h"
+#include "client/cpp/report/campaign_report.h"
 #include "client/cpp/service/follow.h"
 #include "client/cpp/service/interrupt.h"
 #include "client/cpp/text/text.h"
@@ -47,28 +48,6 @@ std::string commands_that_go_on(const Connection& connection, const std::string&
 }
 
 }  // namespace
-
-std::string state_text(v1::Campaign::State state) {
-  switch (state) {
-    case v1::Campaign::RUNNING:
-      return "running";
-    case v1::Campaign::PAUSED:
-      return "paused";
-    case v1::Campaign::SUCCEEDED:
-      return "succeeded";
-    case v1::Campaign::FAILED:
-      return "failed";
-    case v1::Campaign::CANCELLED:
-      return "cancelled";
-    default:
-      return "unknown state";
-  }
-}
-
-std::string points_text(const v1::Campaign& campaign) {
-  return std::to_string(campaign.points_done()) + " of " + std::to_string(campaign.points()) +
-         " points";
-}
 
 std::string interrupted_campaign(const Connection& connection, const std::string& name) {
   return "interrupted." + commands_that_go_on(connection, name);

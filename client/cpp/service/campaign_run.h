@@ -7,12 +7,6 @@
 
 namespace tribodyn::client {
 
-/// Returns "running", "paused", "succeeded", ...
-std::string state_text(v1::Campaign::State state);
-
-/// Returns e.g. "12000 of 39000 points".
-std::string points_text(const v1::Campaign& campaign);
-
 /// What Ctrl-C prints while a campaign is created by a command that would find it again.
 inline constexpr char kCampaignMayExist[] =
     "interrupted while the campaign was created. If the server has it, it goes on, and the same "

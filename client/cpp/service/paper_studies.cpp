@@ -4,9 +4,9 @@
 #include <string>
 
 #include "client/cpp/failure.h"
-#include "client/cpp/report/inputs.h"
 #include "client/cpp/service/follow.h"
 #include "client/cpp/service/interrupt.h"
+#include "client/cpp/text/inputs.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {

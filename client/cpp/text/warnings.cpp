@@ -1,4 +1,4 @@
-#include "client/cpp/report/warnings.h"
+#include "client/cpp/text/warnings.h"
 
 #include <algorithm>
 #include <array>

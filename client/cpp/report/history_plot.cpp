@@ -1,4 +1,4 @@
-#include "client/cpp/plot/history_plot.h"
+#include "client/cpp/report/history_plot.h"
 
 #include <algorithm>
 #include <cctype>
@@ -9,7 +9,7 @@
 #include "client/cpp/plot/footer.h"
 #include "client/cpp/plot/panel.h"
 #include "client/cpp/report/history_report.h"
-#include "client/cpp/report/inputs.h"
+#include "client/cpp/text/inputs.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
 

@@ -1,4 +1,4 @@
-#include "client/cpp/commands/flags.h"
+#include "client/cpp/text/flags.h"
 
 #include <algorithm>
 #include <charconv>

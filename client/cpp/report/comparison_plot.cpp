@@ -1,4 +1,4 @@
-#include "client/cpp/plot/comparison_plot.h"
+#include "client/cpp/report/comparison_plot.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "client/cpp/report/inputs.h"
+#include "client/cpp/text/inputs.h"
 
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/util/time_util.h>
@@ -7,9 +7,9 @@
 #include <cctype>
 #include <map>
 
-#include "client/cpp/report/warnings.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
+#include "client/cpp/text/warnings.h"
 #include "proto/enum_names.h"
 
 namespace tribodyn::client {

@@ -1,4 +1,4 @@
-#include "client/cpp/plot/curve_plot.h"
+#include "client/cpp/report/curve_plot.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@
 
 #include "client/cpp/plot/footer.h"
 #include "client/cpp/plot/panel.h"
-#include "client/cpp/report/inputs.h"
 #include "client/cpp/report/variant_report.h"
-#include "client/cpp/report/warnings.h"
+#include "client/cpp/text/inputs.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
+#include "client/cpp/text/warnings.h"
 
 namespace tribodyn::client {
 namespace {

@@ -1,4 +1,4 @@
-#include "client/cpp/plot/explanation_plot.h"
+#include "client/cpp/report/explanation_plot.h"
 
 #include <algorithm>
 #include <cmath>

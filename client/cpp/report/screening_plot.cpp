@@ -1,4 +1,4 @@
-#include "client/cpp/plot/screening_plot.h"
+#include "client/cpp/report/screening_plot.h"
 
 #include <algorithm>
 #include <cmath>
