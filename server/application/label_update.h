@@ -44,7 +44,7 @@ void take_over_labels(const google::protobuf::FieldMask& mask, const Resource& s
   if (takes_name) target.set_display_name(stated.display_name());
   if (takes_labels) *target.mutable_labels() = stated.labels();
   sort_labels(*target.mutable_labels());
-  // Other fields are left out: those of an older server may break newer constraints.
+  // Only these two change; the other fields were checked when they were accepted.
   Resource changed;
   changed.set_display_name(target.display_name());
   *changed.mutable_labels() = target.labels();

@@ -25,8 +25,6 @@ template <class Resource>
 std::optional<Resource> body_message(const std::string& body) {
   Resource out;
   if (!out.ParseFromString(body)) return std::nullopt;
-  // Bodies of earlier versions may lack entries; an export of them is the same once imported.
-  complete_provenance(out, *out.mutable_provenance());
   fill_units(*Resource::descriptor(), *out.mutable_provenance());
   return out;
 }

@@ -43,27 +43,8 @@ void check_number(const FieldCheck& check, double value) {
   check.violations.add(check.path, std::move(text));
 }
 
-/// A value of an enum that the contract had once, and what to use instead.
-struct RemovedValue {
-  const char* type;
-  int number;
-  const char* name;
-  const char* instead;
-};
-
-constexpr RemovedValue kRemovedValues[] = {
-    {"PointModel", 4, "POINT_MODEL_ONE_DEGREE",
-     "use POINT_MODEL_FULL and a gear set with stiffnesses and dampings of both shafts divided by "
-     "1000: figures agree within 5e-5"}};
-
 void check_enum(const FieldCheck& check, int value) {
   if (check.field.enum_type()->FindValueByNumber(value) != nullptr) return;
-  for (const RemovedValue& removed : kRemovedValues) {
-    if (check.field.enum_type()->name() != removed.type || value != removed.number) continue;
-    check.violations.add(check.path, "{} = {} ({}) was removed; {}", check.field.name(), value,
-                         removed.name, removed.instead);
-    return;
-  }
   std::string names;
   for (int i = 0; i < check.field.enum_type()->value_count(); ++i) {
     names += (i == 0 ? "" : ", ") + check.field.enum_type()->value(i)->name();

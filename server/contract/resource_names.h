@@ -23,8 +23,7 @@ inline constexpr char kCampaigns[] = "campaigns";
 
 // Projects. The full name of a resource is "projects/{project}/lubricants/{id}". The project
 // `default` is the exception: the full name of its resource is the relative name,
-// "lubricants/{id}". So all names from before there were projects stay valid, and each resource has
-// one full name.
+// "lubricants/{id}". So each resource has one full name.
 //
 // A client may state a full name, "projects/default/lubricants/{id}" or a relative name. The parent
 // or the name that a request is about gives the project of the request; a relative name alone gives

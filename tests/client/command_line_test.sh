@@ -40,9 +40,6 @@ for part in "'fast' is not a number" "'hot' is not a number" "'quick' must be on
   err_has "$part"
 done
 
-expect 2 point --lubricant paper-fluid-1 --speed 50 --model one-degree
-err_has "'one-degree' was removed; use full and a gear set with stiffnesses"
-
 echo "--- errors of the server: every violation at once"
 expect 1 point --lubricant paper-fluid-7 --speed -5 --sump-temperature-celsius 900 \
   --march-step-tolerance 1 --gear-set Z

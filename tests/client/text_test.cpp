@@ -242,7 +242,7 @@ v1::FigureLimit limit_of(const std::string& figure, double minimum, double maxim
 TEST(LimitsReport, SetsEachFigureBesideItsLimitAndSaysWhetherItIsKept) {
   v1::Simulation simulation = sample_point();
   v1::SimulationResult& result = *simulation.mutable_result();
-  EXPECT_EQ(limits_report(result), "") << "an older server states none";
+  EXPECT_EQ(limits_report(result), "") << "no limits";
   v1::PointResult& point = *result.mutable_points(0)->mutable_result();
   point.mutable_film_ratio()->set_minimum(0.7);
   point.mutable_maximum_pressure_pascals()->set_maximum(1.2e9);

@@ -14,7 +14,6 @@
 #include "server/application/schemas.h"
 #include "server/application/simulations.h"
 #include "server/contract/constraints.h"
-#include "server/contract/output_only.h"
 #include "server/resources/provenance.h"
 #include "server/storage/resource_types.h"
 #include "tests/service/resource_calls.h"
@@ -558,27 +557,6 @@ TEST_F(ListTest, EveryFluidShowsItsFigures) {
               shown.kinematic_viscosity_100_celsius_square_millimetres_per_second());
     EXPECT_EQ(shown.warnings_size() + shown.walther_comparison_size(), 0) << "for Get";
   }
-}
-
-TEST_F(ResourcesTest, AnExportOfABodyOfAnEarlierVersionIsImportedUnchanged) {
-  auto old = seed<v1::GearSet>("gearSets/reference-axle");
-  old.set_name("gearSets/old");
-  auto& entries = *old.mutable_provenance();
-  for (int i = entries.size() - 1; i >= 0; --i) {
-    if (entries.Get(i).field().ends_with("by_torque")) entries.DeleteSubrange(i, 1);
-  }
-  bench_.store().add_project("default", {{old.name(), old.SerializeAsString()}}, 0);
-  v1::GetGearSetRequest request;
-  request.set_name(old.name());
-  v1::GearSet first = get_gear_set(app_, request).message();
-  keep_client_part(first);
-  v1::CreateGearSetRequest copy;
-  *copy.mutable_gear_set() = first;
-  copy.set_gear_set_id("copy");
-  v1::GearSet second = create_gear_set(app_, copy).message();
-  keep_client_part(second);
-  second.set_name(first.name());
-  EXPECT_EQ(second.SerializeAsString(), first.SerializeAsString());
 }
 
 TEST_F(ResourcesTest, AResourceCannotDescendFromAMissingOneOrFromItsDescendants) {

@@ -385,12 +385,11 @@ TEST_F(RestTest, AWrongValueInABodyIsRefusedWithItsFieldAndWhatIsAllowed) {
     const auto all = violations(response);
     return all.size() == 1 ? all.begin()->first + " " + all.begin()->second : response.body;
   };
-  EXPECT_THAT(
-      violations(send("POST", "/v1/simulations",
-                      R"({"inefficiency_curve": {"model": "POINT_MODEL_ONE_DEGREE"}})"))
-          .at("simulation.inefficiency_curve.model"),
-      AllOf(HasSubstr("is \"POINT_MODEL_ONE_DEGREE\"; allowed: one of POINT_MODEL_UNSPECIFIED, "),
-            HasSubstr("POINT_MODEL_QUASI_STATIC")));
+  EXPECT_THAT(violations(send("POST", "/v1/simulations",
+                              R"({"inefficiency_curve": {"model": "POINT_MODEL_HALF"}})"))
+                  .at("simulation.inefficiency_curve.model"),
+              AllOf(HasSubstr("is \"POINT_MODEL_HALF\"; allowed: one of POINT_MODEL_UNSPECIFIED, "),
+                    HasSubstr("POINT_MODEL_QUASI_STATIC")));
   EXPECT_THAT(wrong(R"({"provenance": [{}, {"provenance": 7.5}]})"),
               AllOf(HasSubstr("lubricant.provenance[1].provenance is 7.5; allowed: one of "),
                     HasSubstr("PROVENANCE_MEASURED")));

@@ -87,13 +87,12 @@ TEST(Simulation, ReasonableRequestsPass) {
   EXPECT_THAT(check(curve_simulation()), IsEmpty());
 }
 
-TEST(Simulation, RemovedModelIsRefusedWithWhatToUse) {
+TEST(Simulation, AnUnknownModelIsRefusedWithTheModelsThatExist) {
   v1::Simulation simulation = point_simulation();
   simulation.mutable_operating_point()->set_model(static_cast<v1::PointModel>(4));
-  EXPECT_THAT(
-      check(simulation),
-      violation("simulation.operating_point.model",
-                "model = 4 (POINT_MODEL_ONE_DEGREE) was removed; use POINT_MODEL_FULL and"));
+  EXPECT_THAT(check(simulation),
+              violation("simulation.operating_point.model",
+                        "model = 4; allowed: POINT_MODEL_UNSPECIFIED, POINT_MODEL_FULL, "));
 }
 
 TEST(Simulation, MarchTolerancesAreRefusedWhereNothingMarches) {

@@ -36,10 +36,7 @@ void add_model_and_start_flags(FlagList& flags, Study& study) {
         constexpr v1::PointModel kModels[] = {v1::POINT_MODEL_AUTOMATIC, v1::POINT_MODEL_FULL,
                                               v1::POINT_MODEL_QUASI_STATIC};
         study.set_model(kModels[index]);
-      },
-      {{"one-degree",
-        "was removed; use full and a gear set with stiffnesses and dampings of both shafts divided "
-        "by 1000: figures agree within 5e-5"}});
+      });
   flags.choice(
       "--start", {"quasi-static", "large-vibration"},
       "Where the march starts; it decides the branch where two responses coexist. "

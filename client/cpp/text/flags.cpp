@@ -178,8 +178,7 @@ Flag& FlagList::choices(const std::string& names, const std::string& words,
 }
 
 Flag& FlagList::choice(const std::string& names, const std::vector<std::string>& words,
-                       const std::string& description, const std::function<void(int)>& set,
-                       const std::map<std::string, std::string>& removed) {
+                       const std::string& description, const std::function<void(int)>& set) {
   const std::string name = names.substr(0, names.find(','));
   std::string all;
   for (const std::string& word : words) {
@@ -188,9 +187,7 @@ Flag& FlagList::choice(const std::string& names, const std::vector<std::string>&
   }
   add(names, all, description, [=](const std::string& given, Complaints& complaints) {
     const auto found = std::find(words.begin(), words.end(), given);
-    if (const auto gone = removed.find(given); gone != removed.end()) {
-      complaints.push_back(complaint(name, given, gone->second));
-    } else if (found == words.end()) {
+    if (found == words.end()) {
       complaints.push_back(complaint(name, given, "must be one of " + all));
     } else {
       set(static_cast<int>(found - words.begin()));

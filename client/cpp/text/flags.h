@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -67,11 +66,9 @@ class FlagList {
   /// Adds a repeatable flag; each text may hold several values separated by commas.
   Flag& texts(const std::string& names, const std::string& value_name,
               const std::string& description, const std::function<void(const std::string&)>& add);
-  /// Adds a choice of one of `words`; `set` receives its index. `removed`: words of earlier
-  /// versions, each with the end of the sentence that refuses it and says what to use.
+  /// Adds a choice of one of `words`; `set` receives its index.
   Flag& choice(const std::string& names, const std::vector<std::string>& words,
-               const std::string& description, const std::function<void(int)>& set,
-               const std::map<std::string, std::string>& removed = {});
+               const std::string& description, const std::function<void(int)>& set);
   /// Like texts(), for values among `words`; `add` returns false for any other value.
   Flag& choices(const std::string& names, const std::string& words, const std::string& description,
                 const std::function<bool(const std::string&)>& add);
