@@ -1,144 +1,75 @@
 #include "tests/contract/breaking_changes.h"
 
 #include <gmock/gmock.h>
-#include <google/protobuf/text_format.h>
 #include <gtest/gtest.h>
+
+#include "tests/contract/parsed_contract.h"
 
 namespace tribodyn {
 namespace {
 
-using google::protobuf::FileDescriptorSet;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
 constexpr char kContract[] = R"(
-  file {
-    package: "p"
-    message_type {
-      name: "M"
-      field { name: "a" number: 1 type: TYPE_DOUBLE label: LABEL_OPTIONAL }
-      field { name: "b" number: 2 type: TYPE_STRING label: LABEL_OPTIONAL oneof_index: 0 }
-      oneof_decl { name: "choice" }
-      nested_type { name: "Inner" field { name: "c" number: 1 type: TYPE_MESSAGE type_name: ".p.M" label: LABEL_REPEATED } }
-    }
-    enum_type { name: "E" value { name: "E_UNSPECIFIED" number: 0 } value { name: "E_ON" number: 1 } }
-    service { name: "S" method { name: "Get" input_type: ".p.M" output_type: ".p.M" server_streaming: true } }
-  })";
+  message M {
+    double a = 1;
+    oneof choice { string b = 2; }
+    repeated .p.M c = 3;
+  }
+  enum E { E_UNSPECIFIED = 0; E_ON = 1; }
+  service S { rpc Get(.p.M) returns (stream .p.M); }
+)";
 
-FileDescriptorSet contract() {
-  FileDescriptorSet out;
-  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(kContract, &out));
-  return out;
-}
-
-std::vector<std::string> changed(void (*change)(google::protobuf::FileDescriptorProto&)) {
-  FileDescriptorSet now = contract();
-  change(*now.mutable_file(0));
-  return breaking_changes(contract(), now);
-}
-
-TEST(BreakingChanges, AreNoneInTheSameContract) {
-  EXPECT_THAT(changed([](auto&) {}), IsEmpty());
+/// Returns what breaks when `before` in the contract is replaced by `now`.
+std::vector<std::string> broken_by(const std::string& before, const std::string& now) {
+  std::string changed = kContract;
+  const std::size_t at = changed.find(before);
+  EXPECT_NE(at, std::string::npos) << before;
+  changed.replace(at, before.size(), now);
+  return breaking_changes(parsed_contract(kContract), parsed_contract(changed));
 }
 
 TEST(BreakingChanges, AreNotAdditions) {
-  EXPECT_THAT(changed([](auto& file) {
-                auto* field = file.mutable_message_type(0)->add_field();
-                field->set_name("new");
-                field->set_number(3);
-                file.add_message_type()->set_name("New");
-                auto* value = file.mutable_enum_type(0)->add_value();
-                value->set_name("E_NEW");
-                value->set_number(2);
-                file.mutable_service(0)->add_method()->set_name("List");
-                file.mutable_service(0)->mutable_method(1)->set_input_type(".p.M");
-                file.mutable_service(0)->mutable_method(1)->set_output_type(".p.M");
-              }),
+  EXPECT_THAT(broken_by("double a = 1;", "double a = 1; int32 new = 4;"), IsEmpty());
+  EXPECT_THAT(broken_by("E_ON = 1;", "E_ON = 1; E_NEW = 2;"), IsEmpty());
+  EXPECT_THAT(broken_by("service S {", "message N {} service S { rpc List(.p.N) returns (.p.N);"),
               IsEmpty());
 }
 
-TEST(BreakingChanges, AreAChangedNumber) {
-  EXPECT_THAT(
-      changed([](auto& file) { file.mutable_message_type(0)->mutable_field(0)->set_number(7); }),
-      ElementsAre("p.M #1 (a, TYPE_DOUBLE) vanished"));
-}
-
-TEST(BreakingChanges, AreAChangedNameTypeCardinalityOrOneof) {
-  EXPECT_THAT(
-      changed([](auto& file) { file.mutable_message_type(0)->mutable_field(0)->set_name("z"); }),
-      ElementsAre("p.M #1 was \"a, TYPE_DOUBLE\" and is \"z, TYPE_DOUBLE\""));
-  EXPECT_THAT(changed([](auto& file) {
-                file.mutable_message_type(0)->mutable_field(0)->set_type(
-                    google::protobuf::FieldDescriptorProto::TYPE_FLOAT);
-              }),
-              ElementsAre("p.M #1 was \"a, TYPE_DOUBLE\" and is \"a, TYPE_FLOAT\""));
-  EXPECT_THAT(changed([](auto& file) {
-                file.mutable_message_type(0)->mutable_field(0)->set_label(
-                    google::protobuf::FieldDescriptorProto::LABEL_REPEATED);
-              }),
-              ElementsAre("p.M #1 was \"a, TYPE_DOUBLE\" and is \"a, repeated TYPE_DOUBLE\""));
-  EXPECT_THAT(changed([](auto& file) {
-                file.mutable_message_type(0)->mutable_field(0)->set_proto3_optional(true);
-              }),
-              ElementsAre("p.M #1 was \"a, TYPE_DOUBLE\" and is \"a, optional TYPE_DOUBLE\""));
-  EXPECT_THAT(
-      changed(
-          [](auto& file) { file.mutable_message_type(0)->mutable_field(1)->clear_oneof_index(); }),
-      ElementsAre("p.M #2 was \"b, TYPE_STRING in oneof choice\" and is \"b, TYPE_STRING\""));
-  EXPECT_THAT(
-      changed([](auto& file) {
-        file.mutable_message_type(0)->mutable_nested_type(0)->mutable_field(0)->set_type_name(
-            ".p.N");
-      }),
-      ElementsAre("p.M.Inner #1 was \"c, repeated p.M\" and is \"c, repeated p.N\""));
-}
-
-TEST(BreakingChanges, AreARemovedFieldUnlessItsNumberAndNameAreReserved) {
-  const auto remove = [](auto& file) {
-    file.mutable_message_type(0)->mutable_field()->DeleteSubrange(0, 1);
-    return file.mutable_message_type(0);
-  };
-  FileDescriptorSet now = contract();
-  auto* message = remove(*now.mutable_file(0));
-  EXPECT_THAT(breaking_changes(contract(), now), ElementsAre("p.M #1 (a, TYPE_DOUBLE) vanished"));
-  auto* range = message->add_reserved_range();
-  range->set_start(1);
-  range->set_end(2);
-  EXPECT_THAT(breaking_changes(contract(), now),
+TEST(BreakingChanges, AreWhatVanishesUnlessItsNumberAndNameAreReserved) {
+  EXPECT_THAT(broken_by("double a = 1;", ""), ElementsAre("p.M #1 (a, TYPE_DOUBLE) vanished"));
+  EXPECT_THAT(broken_by("double a = 1;", "reserved 1;"),
               ElementsAre("p.M #1 (a, TYPE_DOUBLE) vanished and its name is not reserved"));
-  message->add_reserved_name("a");
-  EXPECT_THAT(breaking_changes(contract(), now), IsEmpty());
+  EXPECT_THAT(broken_by("double a = 1;", "reserved 1; reserved \"a\";"), IsEmpty());
+  EXPECT_THAT(broken_by("E_ON = 1;", ""), ElementsAre("p.E #1 (E_ON) vanished"));
+  EXPECT_THAT(broken_by("E_ON = 1;", "reserved 1; reserved \"E_ON\";"), IsEmpty());
+  EXPECT_THAT(broken_by("rpc Get(.p.M) returns (stream .p.M);", ""),
+              ElementsAre("p.S/Get (p.M -> stream p.M) vanished"));
   EXPECT_THAT(
-      breaking_changes(now, contract()),
+      breaking_changes(parsed_contract("message M { reserved 1; reserved \"a\"; }"),
+                       parsed_contract("message M { double a = 1; }")),
       ElementsAre("p.M #1 was \"reserved\" and is \"a, TYPE_DOUBLE\"", "p.M a (reserved) vanished"))
       << "a reserved number comes back";
 }
 
-TEST(BreakingChanges, AreAValueThatIsRenamedOrRemoved) {
+TEST(BreakingChanges, AreAChangedNumberNameTypeCardinalityOneofOrSignature) {
+  const auto a_is = [](const std::string& now) {
+    return ElementsAre("p.M #1 was \"a, TYPE_DOUBLE\" and is \"" + now + "\"");
+  };
+  EXPECT_THAT(broken_by("double a = 1;", "double a = 7;"),
+              ElementsAre("p.M #1 (a, TYPE_DOUBLE) vanished"));
+  EXPECT_THAT(broken_by("double a", "double z"), a_is("z, TYPE_DOUBLE"));
+  EXPECT_THAT(broken_by("double a", "float a"), a_is("a, TYPE_FLOAT"));
+  EXPECT_THAT(broken_by("double a", "repeated double a"), a_is("a, repeated TYPE_DOUBLE"));
+  EXPECT_THAT(broken_by("double a", "optional double a"), a_is("a, optional TYPE_DOUBLE"));
+  EXPECT_THAT(broken_by("repeated .p.M c", "repeated .p.N c"),
+              ElementsAre("p.M #3 was \"c, repeated p.M\" and is \"c, repeated p.N\""));
   EXPECT_THAT(
-      changed([](auto& file) { file.mutable_enum_type(0)->mutable_value(1)->set_name("E_OFF"); }),
-      ElementsAre("p.E #1 was \"E_ON\" and is \"E_OFF\""));
-  EXPECT_THAT(changed([](auto& file) { file.mutable_enum_type(0)->mutable_value()->RemoveLast(); }),
-              ElementsAre("p.E #1 (E_ON) vanished"));
-  EXPECT_THAT(changed([](auto& file) {
-                auto* type = file.mutable_enum_type(0);
-                type->mutable_value()->RemoveLast();
-                type->add_reserved_range()->set_start(1);
-                type->mutable_reserved_range(0)->set_end(1);
-                type->add_reserved_name("E_ON");
-              }),
-              IsEmpty());
-}
-
-TEST(BreakingChanges, AreARemovedMessageServiceOrMethodAndAChangedSignature) {
-  EXPECT_THAT(
-      changed([](auto& file) { file.mutable_message_type(0)->clear_nested_type(); }),
-      ElementsAre("p.M.Inner (message) vanished", "p.M.Inner #1 (c, repeated p.M) vanished"));
-  EXPECT_THAT(changed([](auto& file) { file.clear_service(); }),
-              ElementsAre("p.S (service) vanished", "p.S/Get (p.M -> stream p.M) vanished"));
-  EXPECT_THAT(changed([](auto& file) {
-                file.mutable_service(0)->mutable_method(0)->set_server_streaming(false);
-              }),
+      broken_by("oneof choice { string b = 2; }", "string b = 2;"),
+      ElementsAre("p.M #2 was \"b, TYPE_STRING in oneof choice\" and is \"b, TYPE_STRING\""));
+  EXPECT_THAT(broken_by("E_ON", "E_OFF"), ElementsAre("p.E #1 was \"E_ON\" and is \"E_OFF\""));
+  EXPECT_THAT(broken_by("stream ", ""),
               ElementsAre("p.S/Get was \"p.M -> stream p.M\" and is \"p.M -> p.M\""));
 }
 

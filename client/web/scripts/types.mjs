@@ -1,4 +1,4 @@
-// Writes the types of the contract's JSON from its committed descriptors.
+// Writes the types of the contract's JSON from the text of deploy/contract-text.
 // usage: node scripts/types.mjs DESCRIPTORS.txtpb TYPES.ts
 // REST's JSON has the names of the protos; 64-bit integers are texts; every field may be missing.
 import { readFileSync, writeFileSync } from 'node:fs';
