@@ -15,9 +15,8 @@ const config = await createConfig({
     "operation-operationId-unique": "error",
     "operation-parameters-unique": "error",
     "operation-tag-defined": "error",
-    "parameter-description": "error",
     "path-params-defined": "error",
-    "tag-description": "error",
+    "tag-description": "off",
     "no-unused-components": "error",
   },
 });
