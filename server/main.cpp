@@ -81,7 +81,9 @@ int run(const std::vector<std::string>& arguments) {
   } catch (const ListenError& error) {
     return complain(kExitCannotListen, error.what());
   } catch (const StoreError& error) {
-    return complain(kExitBadDatabase, error.what());
+    return complain(
+        error.kind() == StoreError::Kind::kOtherVersion ? kExitOtherVersion : kExitBadDatabase,
+        error.what());
   }
 }
 

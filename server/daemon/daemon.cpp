@@ -254,7 +254,7 @@ int serve(const Settings& settings, const std::vector<ListenAddress>& addresses,
   Store store(settings.database);
   if (store.migration_backup()) {
     spdlog::info("the database was brought to schema {}; {} holds it as it was before",
-                 kSchemaVersion, store.migration_backup()->string());
+                 schema_steps().size(), store.migration_backup()->string());
   }
   const std::vector<NewResource> seeds = seed_resources();
   store.add_project(kDefaultProject, seeds, system_time());

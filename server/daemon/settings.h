@@ -16,6 +16,7 @@ inline constexpr int kExitBadSettings = 2;
 inline constexpr int kExitBadDatabase = 3;
 inline constexpr int kExitCannotListen = 4;
 inline constexpr int kExitWrongResults = 5;
+inline constexpr int kExitOtherVersion = 6;  // another version wrote the database
 
 /// What `tribodynd tokens` is to do.
 struct TokenSettings {

@@ -2,9 +2,11 @@
 
 #include <SQLiteCpp/Statement.h>
 #include <fmt/format.h>
+#include <sqlite3.h>
 
 #include <map>
 #include <optional>
+#include <system_error>
 
 #include "server/contract/resource_kinds.h"
 #include "server/contract/resource_names.h"
@@ -13,7 +15,6 @@
 #include "server/storage/history_rows.h"
 #include "server/storage/properties.h"
 #include "server/storage/resource_types.h"
-#include "server/storage/schema.h"
 #include "server/storage/store_error.h"
 #include "server/support/sha256.h"
 #include "tribodyn/v1/results.pb.h"
@@ -32,6 +33,22 @@ int pragma(Connection& db, const std::string& name) {
 bool is_new(Connection& db) {
   return db.execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0 &&
          pragma(db, "user_version") == 0 && pragma(db, "application_id") == 0;
+}
+
+/// Returns the fingerprint that a database holds; empty if it holds none.
+std::string fingerprint_of(Connection& db) try {
+  return db.execAndGet("SELECT max(fingerprint) FROM format").getString();
+} catch (const SQLite::Exception& error) {
+  if (error.getErrorCode() == SQLITE_ERROR) return {};  // there is no such table
+  throw;
+}
+
+/// Makes the connection leave a write-ahead log as it is when it closes: SQLite would write the
+/// changes of a killed server into the database file.
+void keep_log(Connection& db, const std::filesystem::path& path) {
+  std::error_code missing;
+  if (std::filesystem::file_size(path.string() + "-wal", missing) == 0 || missing) return;
+  sqlite3_db_config(db.getHandle(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
 }
 
 /// Runs a query whose rows are problems: each row is a sentence.
@@ -283,26 +300,31 @@ void check_simulations(Connection& db, const HashInputs& hash_inputs, Problems& 
 
 }  // namespace
 
-void check_identity(Connection& db, const std::filesystem::path& path) {
-  const int version = pragma(db, "user_version");
-  const int application = pragma(db, "application_id");
+void check_identity(Connection& db, const std::filesystem::path& path, const SchemaSteps& steps) {
   const std::string name = "database " + path.string();
-  if (application != kApplicationId) {
+  if (pragma(db, "application_id") != kApplicationId) {
     throw StoreError(StoreError::Kind::kForeign,
                      name + (is_new(db) ? " is empty" : " belongs to another program"));
   }
-  if (version > kSchemaVersion) {
-    throw StoreError(StoreError::Kind::kNewerSchema,
-                     name + " has schema " + std::to_string(version) +
-                         ", written by a newer tribodynd; this one supports schemas up to " +
-                         std::to_string(kSchemaVersion));
+  const int version = pragma(db, "user_version");
+  if (0 < version && version <= static_cast<int>(steps.size()) &&
+      fingerprint_of(db) == steps[static_cast<std::size_t>(version) - 1].fingerprint) {
+    return;
   }
+  keep_log(db, path);
+  throw StoreError(
+      StoreError::Kind::kOtherVersion,
+      name +
+          " was written by another development version of tribodynd, and before 0.1.0 versions "
+          "do not read each other's databases: export its resources with that version "
+          "(tribodyn lubricants export --all --file FILE; also gear-sets, surfaces and "
+          "vehicles), or name a new file with --database");
 }
 
-void require_servable(Connection& db, const std::filesystem::path& path) {
+void require_servable(Connection& db, const std::filesystem::path& path, const SchemaSteps& steps) {
   if (is_new(db)) return;
-  check_identity(db, path);
-  const std::vector<std::string> differences = schema_differences(db);
+  check_identity(db, path, steps);
+  const std::vector<std::string> differences = schema_differences(db, steps);
   if (differences.empty()) return;
   const std::size_t more = differences.size() - 1;
   throw StoreError(StoreError::Kind::kCorrupt,
@@ -312,16 +334,16 @@ void require_servable(Connection& db, const std::filesystem::path& path) {
 }
 
 Problems problems_of(Connection& db, const std::filesystem::path& path,
-                     const HashInputs& hash_inputs) {
+                     const HashInputs& hash_inputs, const SchemaSteps& steps) {
   if (is_new(db)) return {};
-  check_identity(db, path);
+  check_identity(db, path, steps);
   Problems problems;
   check_file(db, problems);
   if (!problems.empty()) return problems;
-  problems = schema_differences(db);
+  problems = schema_differences(db, steps);
   if (!problems.empty()) return problems;
   // the next start of a server migrates it
-  if (pragma(db, "user_version") < kSchemaVersion) return problems;
+  if (pragma(db, "user_version") < static_cast<int>(steps.size())) return problems;
   add_checksum_function(db);
   db.exec("BEGIN");  // a snapshot: a server may write meanwhile
   check_rows(db, problems);

@@ -84,7 +84,7 @@ void insert_history_column(Connection& db, std::int64_t result, std::int64_t pos
     for (std::size_t number = 0; number < column.levels[level].size(); ++number) {
       const std::string& data = column.levels[level][number];
       block.run(row, static_cast<std::int64_t>(level), static_cast<std::int64_t>(number),
-                Blob{data}, checksum(data));
+                checksum(data), Blob{data});
     }
   }
 }

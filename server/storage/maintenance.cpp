@@ -204,11 +204,12 @@ std::optional<fs::path> restore_database(const fs::path& copy, const fs::path& d
   });
 }
 
-std::vector<std::string> check_database(const fs::path& database, const HashInputs& hash_inputs) {
+std::vector<std::string> check_database(const fs::path& database, const HashInputs& hash_inputs,
+                                        const SchemaSteps& steps) {
   return translated(database, [&] {
     require_usable_path(canonical_path(database));
     Connection db = open_existing(database, SQLite::OPEN_READONLY);
-    return problems_of(db, database, hash_inputs);
+    return problems_of(db, database, hash_inputs, steps);
   });
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "server/storage/schema.h"
 #include "tribodyn/v1/simulations.pb.h"
 
 namespace tribodyn::server {
@@ -32,7 +33,7 @@ std::vector<std::filesystem::path> former_databases(const std::filesystem::path&
 /// database. Whenever the process or the power fails, the path has the old or the new database,
 /// complete; only the log of a damaged old database may already be at the kept name. Throws
 /// StoreError, and leaves the database unchanged, if a server uses it, or if the backup is damaged,
-/// inconsistent, newer than this program or another program's.
+/// inconsistent, of another version of this program or another program's.
 std::optional<std::filesystem::path> restore_database(const std::filesystem::path& copy,
                                                       const std::filesystem::path& database);
 
@@ -54,6 +55,7 @@ using HashInputs = std::function<std::optional<std::string>(
 /// for a sound database, and for a file in which a server would create a new one. A server may use
 /// the database meanwhile. Throws StoreError if the database cannot be opened or read.
 std::vector<std::string> check_database(const std::filesystem::path& database,
-                                        const HashInputs& hash_inputs = nullptr);
+                                        const HashInputs& hash_inputs = nullptr,
+                                        const SchemaSteps& steps = schema_steps());
 
 }  // namespace tribodyn::server

@@ -1,6 +1,5 @@
 #include "server/storage/resource_types.h"
 
-#include "proto/field_behavior.h"
 #include "proto/resource_kinds.h"
 #include "server/contract/resource_names.h"
 #include "tribodyn/v1/campaigns.pb.h"
@@ -8,7 +7,6 @@
 
 namespace tribodyn::server {
 
-using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
 std::string collection_of(std::string_view full_name) {
@@ -28,22 +26,6 @@ std::unique_ptr<Message> new_resource(std::string_view collection) {
   if (collection == kSimulations) return std::make_unique<v1::Simulation>();
   if (collection == kCampaigns) return std::make_unique<v1::Campaign>();
   return nullptr;
-}
-
-void set_missing_numbers(Message& message) {
-  const auto& descriptor = *message.GetDescriptor();
-  const auto& reflection = *message.GetReflection();
-  for (int i = 0; i < descriptor.field_count(); ++i) {
-    const FieldDescriptor* field = descriptor.field(i);
-    if (field->is_repeated() || !field->has_presence()) continue;
-    const bool set = reflection.HasField(message, field);
-    if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
-      if (set) set_missing_numbers(*reflection.MutableMessage(&message, field));
-    } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE && !set &&
-               field->real_containing_oneof() == nullptr && !is_documentary(*field)) {
-      reflection.SetDouble(&message, field, 0);
-    }
-  }
 }
 
 }  // namespace tribodyn::server

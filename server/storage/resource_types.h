@@ -17,8 +17,4 @@ std::string full_collection_of(std::string_view full_name);
 /// Returns an empty message of the kind of a collection; null for an unknown collection.
 std::unique_ptr<google::protobuf::Message> new_resource(std::string_view collection);
 
-/// Sets every unset number with presence to zero, also in nested singular messages that are set; of
-/// those that the model uses, as it did before there was presence.
-void set_missing_numbers(google::protobuf::Message& message);
-
 }  // namespace tribodyn::server

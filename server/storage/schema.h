@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "server/storage/connection.h"
-#include "server/storage/times.h"
 
 namespace tribodyn::server {
 
-/// The tables of a database, schema 14. Times are microseconds since 1970 (UTC). Messages are the
-/// protos of tribodyn.v1 in binary form: field numbers never change meaning.
+/// The tables of a database, schema 1. Times are microseconds since 1970 (UTC). Messages are the
+/// protos of tribodyn.v1 in binary form.
 ///
+///   format       one row: the fingerprint of the program that wrote the database (SchemaStep)
 ///   projects     one row per project; last_number is that of its latest simulation, removed or
 ///                not, and last_event that of its latest event. deletions: how many events of state
 ///                0 it has; forgotten_event: the largest number of those that were forgotten since
@@ -49,9 +49,8 @@ namespace tribodyn::server {
 ///                else. They belong to the job, as they name its resources
 ///   results      one SimulationResult without assumptions for equal inputs (input_hash), model
 ///                version and platform in one project, written with the change of state of the
-///                first job that has it. platform is empty, and the result serves no other job,
-///                where it comes from an older schema. checksum: of body (checksum.h);
-///                stored_bytes: of body and of the blocks of its history, which go together
+///                first job that has it. checksum: of body (checksum.h); stored_bytes: of body and
+///                of the blocks of its history, which go together
 ///   campaigns    one row per campaign; number counts within its project. state as in
 ///                Campaign.State, stop_reason and stop_message why it is paused or failed.
 ///                request: the Campaign as the client stated it, without its candidates, which are
@@ -86,19 +85,33 @@ namespace tribodyn::server {
 ///                one never changes
 ///   token_log    one row: the number of changes of tokens, the number of those that the server has
 ///                applied, and the key of page tokens
-///
-/// The text of a schema that a release has written never changes: the tables of a database are
-/// compared with it (schema_differences).
-inline constexpr int kSchemaVersion = 14;
 inline constexpr int kApplicationId = 0x54524244;  // "TRBD"
 
-/// Brings a database of schema `from`, 0 for an empty one, to kSchemaVersion in one transaction. A
-/// new database goes the same way as an old one, so that there is one description of the tables.
-void migrate(Connection& database, int from, Microseconds now);
+/// What makes a schema of the one before: SQL, then an action for what SQL cannot do.
+struct SchemaStep {
+  const char* text;
+  void (*convert)(Connection&);  ///< null: none
+  /// Of the databases of the schema, 64 hex digits. A database with another one is not opened.
+  std::string fingerprint;
+};
+
+/// The step at index n makes schema n + 1 of schema n; schema 0 is an empty database. The last one
+/// makes the present schema.
+using SchemaSteps = std::vector<SchemaStep>;
+
+/// The steps of this program. Until the release of 0.1.0 there is one, whose text and messages may
+/// change in every commit; its fingerprint is the SHA-256 of both (wire_layout.h). From then on
+/// whoever changes a table or a message that is stored adds a step, and writes the fingerprint of
+/// the released one down as a constant: what a release has written never changes.
+const SchemaSteps& schema_steps();
+
+/// Brings a database of schema `from`, 0 for an empty one, to the present schema in one
+/// transaction.
+void migrate(Connection& database, int from, const SchemaSteps& steps);
 
 /// How the tables, indexes, triggers and views of a database differ from those that this program
 /// makes for its schema, a sentence each. Whoever adds a trigger changes what every write does.
-/// Throws SQLite::Exception.
-std::vector<std::string> schema_differences(Connection& database);
+/// Requires check_identity() (database_check.h). Throws SQLite::Exception.
+std::vector<std::string> schema_differences(Connection& database, const SchemaSteps& steps);
 
 }  // namespace tribodyn::server

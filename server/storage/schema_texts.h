@@ -2,49 +2,25 @@
 
 namespace tribodyn::server {
 
-// What leads from each schema to the next, beside the conversions of schema.cpp.
-
+/// The tables of schema 1; schema.h says what they hold. Columns that may be long come last: SQLite
+/// reads a row from its beginning.
 inline constexpr char kSchema1[] = R"sql(
-CREATE TABLE resources (
-  name TEXT PRIMARY KEY,
-  body BLOB NOT NULL
+-- Bytes beside messages: compressed columns 1 (column_codec.h), levels of histories 1 (pyramid.h),
+-- columns of tiles 1 (campaign_columns.h). Whoever changes one of them counts it up.
+CREATE TABLE format (
+  id INTEGER PRIMARY KEY CHECK (id = 1),
+  fingerprint TEXT NOT NULL CHECK (length(fingerprint) = 64)
 ) STRICT;
 
-CREATE TABLE simulations (
-  id INTEGER PRIMARY KEY AUTOINCREMENT,
-  state INTEGER NOT NULL CHECK (state BETWEEN 1 AND 5),
-  create_time INTEGER NOT NULL,
-  start_time INTEGER,
-  end_time INTEGER,
-  request BLOB NOT NULL,
-  input_hash TEXT NOT NULL CHECK (length(input_hash) = 64),
-  error_reason TEXT,
-  error_message TEXT,
-  CHECK ((state = 4) = (error_reason IS NOT NULL)),
-  CHECK ((state >= 3) = (end_time IS NOT NULL))
-) STRICT;
-CREATE INDEX unfinished_simulations ON simulations (id) WHERE state IN (1, 2);
-CREATE INDEX simulations_by_input ON simulations (input_hash);
-
-CREATE TABLE results (
-  simulation INTEGER PRIMARY KEY REFERENCES simulations (id) ON DELETE CASCADE,
-  body BLOB NOT NULL
-) STRICT;
-
-CREATE TABLE history (
-  id INTEGER PRIMARY KEY,
-  simulation INTEGER NOT NULL REFERENCES simulations (id) ON DELETE CASCADE,
-  position INTEGER NOT NULL,
-  name TEXT NOT NULL,
-  data BLOB NOT NULL,
-  UNIQUE (simulation, position)
-) STRICT;
-)sql";
-
-// A column that ALTER TABLE adds with a reference may be empty: so it is for a simulation of schema
-// 1 whose request names what is not there.
-inline constexpr char kSchema2[] = R"sql(
-ALTER TABLE resources RENAME TO resources_of_schema_1;
+CREATE TABLE projects (
+  name TEXT PRIMARY KEY CHECK (length(name) BETWEEN 1 AND 63),
+  last_number INTEGER NOT NULL DEFAULT 0 CHECK (last_number >= 0),
+  last_event INTEGER NOT NULL DEFAULT 0 CHECK (last_event >= 0),
+  last_campaign INTEGER NOT NULL DEFAULT 0 CHECK (last_campaign >= 0),
+  simulations INTEGER NOT NULL DEFAULT 0 CHECK (simulations >= 0),
+  deletions INTEGER NOT NULL DEFAULT 0 CHECK (deletions >= 0),
+  forgotten_event INTEGER NOT NULL DEFAULT 0 CHECK (forgotten_event BETWEEN 0 AND last_event)
+) STRICT, WITHOUT ROWID;
 
 CREATE TABLE resources (
   id INTEGER PRIMARY KEY,
@@ -66,13 +42,13 @@ CREATE TABLE revisions (
   body BLOB NOT NULL,
   UNIQUE (resource, revision)
 ) STRICT;
+CREATE TRIGGER revisions_follow_one_another BEFORE INSERT ON revisions
+WHEN NEW.revision <> 1 + (SELECT count(*) FROM revisions WHERE resource = NEW.resource)
+BEGIN SELECT RAISE(ABORT, 'a revision follows the last one'); END;
 CREATE TRIGGER revisions_never_change BEFORE UPDATE ON revisions
 BEGIN SELECT RAISE(ABORT, 'a revision never changes'); END;
 CREATE TRIGGER revisions_stay BEFORE DELETE ON revisions
 BEGIN SELECT RAISE(ABORT, 'a revision is never removed'); END;
-CREATE TRIGGER revisions_follow_one_another BEFORE INSERT ON revisions
-WHEN NEW.revision <> 1 + (SELECT count(*) FROM revisions WHERE resource = NEW.resource)
-BEGIN SELECT RAISE(ABORT, 'a revision follows the last one'); END;
 
 CREATE VIEW revision_names AS
 SELECT v.id AS revision_id, r.name AS name, v.revision AS revision
@@ -88,19 +64,6 @@ CREATE TABLE properties (
 ) STRICT, WITHOUT ROWID;
 CREATE INDEX properties_by_value ON properties (collection, key, value, name);
 
-ALTER TABLE simulations ADD COLUMN lubricant INTEGER REFERENCES revisions (id);
-ALTER TABLE simulations ADD COLUMN gear_set INTEGER REFERENCES revisions (id);
-ALTER TABLE simulations ADD COLUMN surface INTEGER REFERENCES revisions (id);
-ALTER TABLE simulations ADD COLUMN vehicle INTEGER REFERENCES revisions (id);
-)sql";
-
-inline constexpr char kSchema3[] = R"sql(
-DROP INDEX unfinished_simulations;
-DROP INDEX simulations_by_input;
-ALTER TABLE simulations RENAME TO simulations_of_schema_2;
-ALTER TABLE results RENAME TO results_of_schema_2;
-ALTER TABLE history RENAME TO history_of_schema_2;
-
 CREATE TABLE ledgers (
   id INTEGER PRIMARY KEY,
   content_hash TEXT NOT NULL UNIQUE CHECK (length(content_hash) = 64),
@@ -109,99 +72,20 @@ CREATE TABLE ledgers (
 
 CREATE TABLE results (
   id INTEGER PRIMARY KEY,
+  project TEXT NOT NULL DEFAULT 'default',
   input_hash TEXT NOT NULL CHECK (length(input_hash) = 64),
   model_version TEXT NOT NULL,
-  platform TEXT NOT NULL,
+  platform TEXT NOT NULL CHECK (length(platform) > 0),
   create_time INTEGER NOT NULL,
+  checksum INTEGER NOT NULL DEFAULT 0,
+  stored_bytes INTEGER NOT NULL DEFAULT 0,
   body BLOB NOT NULL
 ) STRICT;
-CREATE UNIQUE INDEX one_result_per_input ON results (input_hash, model_version, platform)
-WHERE platform <> '';
-
-CREATE TABLE history (
-  id INTEGER PRIMARY KEY,
-  result INTEGER NOT NULL REFERENCES results (id) ON DELETE CASCADE,
-  position INTEGER NOT NULL,
-  name TEXT NOT NULL,
-  data BLOB NOT NULL,
-  UNIQUE (result, position)
-) STRICT;
-
-CREATE TABLE simulations (
-  id INTEGER PRIMARY KEY AUTOINCREMENT,
-  state INTEGER NOT NULL CHECK (state BETWEEN 1 AND 5),
-  attempt INTEGER NOT NULL DEFAULT 1 CHECK (attempt >= 1),
-  lost_attempts INTEGER NOT NULL DEFAULT 0 CHECK (lost_attempts < attempt OR state = 4),
-  sequence INTEGER NOT NULL DEFAULT 0,
-  create_time INTEGER NOT NULL,
-  start_time INTEGER,
-  end_time INTEGER,
-  deadline_time INTEGER,
-  request BLOB NOT NULL,
-  request_id TEXT CHECK (length(request_id) > 0),
-  request_hash TEXT NOT NULL DEFAULT '',
-  is_forced INTEGER NOT NULL DEFAULT 0 CHECK (is_forced IN (0, 1)),
-  cache_hit INTEGER NOT NULL DEFAULT 0 CHECK (cache_hit IN (0, 1)),
-  input_hash TEXT NOT NULL CHECK (length(input_hash) = 64),
-  result INTEGER REFERENCES results (id),
-  ledger INTEGER REFERENCES ledgers (id),
-  error_reason TEXT,
-  error_message TEXT,
-  lubricant INTEGER REFERENCES revisions (id),
-  gear_set INTEGER REFERENCES revisions (id),
-  surface INTEGER REFERENCES revisions (id),
-  vehicle INTEGER REFERENCES revisions (id),
-  CHECK ((state = 3) = (result IS NOT NULL)),
-  CHECK ((state = 4) = (error_reason IS NOT NULL)),
-  CHECK ((state >= 3) = (end_time IS NOT NULL))
-) STRICT;
-
-CREATE TABLE events (
-  simulation INTEGER NOT NULL REFERENCES simulations (id) ON DELETE CASCADE,
-  sequence INTEGER NOT NULL CHECK (sequence >= 1),
-  time INTEGER NOT NULL,
-  state INTEGER NOT NULL CHECK (state BETWEEN 1 AND 5),
-  attempt INTEGER NOT NULL CHECK (attempt >= 1),
-  reason TEXT NOT NULL,
-  PRIMARY KEY (simulation, sequence)
-) STRICT, WITHOUT ROWID;
-
-INSERT INTO results SELECT simulation, input_hash, '', '', end_time, body
-FROM results_of_schema_2 JOIN simulations_of_schema_2 ON id = simulation;
-INSERT INTO history SELECT id, simulation, position, name, data FROM history_of_schema_2;
-INSERT INTO simulations (id, state, create_time, start_time, end_time, request, input_hash, result,
-                         error_reason, error_message, lubricant, gear_set, surface, vehicle)
-SELECT id, state, create_time, start_time, end_time, request, input_hash,
-       CASE state WHEN 3 THEN id END,
-       error_reason, error_message, lubricant, gear_set, surface, vehicle
-FROM simulations_of_schema_2;
-INSERT INTO events SELECT id, 1, create_time, 1, 1, '' FROM simulations;
-INSERT INTO events SELECT id, 2, start_time, 2, 1, '' FROM simulations
-WHERE start_time IS NOT NULL;
-INSERT INTO events SELECT s.id, 1 + count(*), end_time, s.state, 1, ''
-FROM simulations s JOIN events e ON e.simulation = s.id
-WHERE end_time IS NOT NULL GROUP BY s.id;
-UPDATE simulations SET sequence = (SELECT count(*) FROM events WHERE simulation = id);
-DROP TABLE history_of_schema_2;
-DROP TABLE results_of_schema_2;
-DROP TABLE simulations_of_schema_2;
-
-CREATE INDEX unfinished_simulations ON simulations (id) WHERE state IN (1, 2);
-CREATE INDEX simulations_by_input ON simulations (input_hash);
-CREATE UNIQUE INDEX one_simulation_per_request ON simulations (request_id);
-
-CREATE TRIGGER states_move_forward BEFORE UPDATE OF state ON simulations
-WHEN NOT (OLD.state = 1 AND NEW.state IN (2, 3, 4, 5) AND NEW.attempt = OLD.attempt OR
-          OLD.state = 2 AND NEW.state IN (3, 4, 5) AND NEW.attempt = OLD.attempt OR
-          OLD.state = 2 AND NEW.state = 1 AND NEW.attempt = OLD.attempt + 1)
-BEGIN SELECT RAISE(ABORT, 'no such change of state'); END;
-CREATE TRIGGER states_change_with_an_event BEFORE UPDATE OF state ON simulations
-WHEN NEW.sequence <> OLD.sequence + 1
-BEGIN SELECT RAISE(ABORT, 'a change of state is an event'); END;
-)sql";
-
-inline constexpr char kSchema4[] = R"sql(
-ALTER TABLE history RENAME TO history_of_schema_3;
+CREATE UNIQUE INDEX one_result_per_input ON results (project, input_hash, model_version, platform);
+CREATE INDEX results_by_size ON results (id, stored_bytes);
+CREATE INDEX results_by_project ON results (project, stored_bytes);
+CREATE TRIGGER results_stay_in_their_project BEFORE UPDATE OF project ON results
+BEGIN SELECT RAISE(ABORT, 'a result keeps its project'); END;
 
 CREATE TABLE history_columns (
   id INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -216,13 +100,84 @@ CREATE TABLE history_blocks (
   history_column INTEGER NOT NULL REFERENCES history_columns (id) ON DELETE CASCADE,
   level INTEGER NOT NULL CHECK (level >= 0),
   number INTEGER NOT NULL CHECK (number >= 0),
+  checksum INTEGER NOT NULL DEFAULT 0,
   data BLOB NOT NULL,
   UNIQUE (history_column, level, number)
 ) STRICT;
 
-ALTER TABLE simulations ADD COLUMN pinned INTEGER NOT NULL DEFAULT 0 CHECK (pinned IN (0, 1));
-ALTER TABLE simulations ADD COLUMN client TEXT NOT NULL DEFAULT '';
-ALTER TABLE simulations ADD COLUMN cost_seconds REAL NOT NULL DEFAULT 0;
+CREATE TABLE simulations (
+  id INTEGER PRIMARY KEY AUTOINCREMENT,
+  project TEXT NOT NULL DEFAULT 'default',
+  number INTEGER NOT NULL DEFAULT 0,
+  state INTEGER NOT NULL CHECK (state BETWEEN 1 AND 5),
+  attempt INTEGER NOT NULL DEFAULT 1 CHECK (attempt >= 1),
+  lost_attempts INTEGER NOT NULL DEFAULT 0 CHECK (lost_attempts < attempt OR state = 4),
+  sequence INTEGER NOT NULL DEFAULT 0,
+  create_time INTEGER NOT NULL,
+  start_time INTEGER,
+  end_time INTEGER,
+  deadline_time INTEGER,
+  request_id TEXT CHECK (length(request_id) > 0),
+  request_hash TEXT NOT NULL DEFAULT '',
+  is_forced INTEGER NOT NULL DEFAULT 0 CHECK (is_forced IN (0, 1)),
+  cache_hit INTEGER NOT NULL DEFAULT 0 CHECK (cache_hit IN (0, 1)),
+  pinned INTEGER NOT NULL DEFAULT 0 CHECK (pinned IN (0, 1)),
+  client TEXT NOT NULL DEFAULT '',
+  principal TEXT NOT NULL DEFAULT '',
+  scheduling_class INTEGER NOT NULL DEFAULT 0 CHECK (scheduling_class BETWEEN 0 AND 2),
+  cost_seconds REAL NOT NULL DEFAULT 0,
+  lease_worker TEXT CHECK (length(lease_worker) > 0),
+  lease_expire_time INTEGER CHECK ((lease_worker IS NULL) = (lease_expire_time IS NULL)),
+  input_hash TEXT NOT NULL CHECK (length(input_hash) = 64),
+  lubricant INTEGER REFERENCES revisions (id),
+  gear_set INTEGER REFERENCES revisions (id),
+  surface INTEGER REFERENCES revisions (id),
+  vehicle INTEGER REFERENCES revisions (id),
+  result INTEGER REFERENCES results (id),
+  ledger INTEGER REFERENCES ledgers (id),
+  error_reason TEXT,
+  error_message TEXT,
+  request BLOB NOT NULL,
+  CHECK ((state = 3) = (result IS NOT NULL)),
+  CHECK ((state = 4) = (error_reason IS NOT NULL)),
+  CHECK ((state >= 3) = (end_time IS NOT NULL))
+) STRICT;
+CREATE UNIQUE INDEX simulations_by_number ON simulations (project, number);
+CREATE UNIQUE INDEX one_simulation_per_request ON simulations (project, request_id);
+CREATE INDEX simulations_by_time ON simulations (project, create_time, number);
+CREATE INDEX simulations_by_state ON simulations (project, state, create_time, number);
+CREATE INDEX simulations_by_input ON simulations (input_hash);
+CREATE INDEX simulations_by_lubricant ON simulations (lubricant, create_time);
+CREATE INDEX simulations_by_gear_set ON simulations (gear_set);
+CREATE INDEX simulations_by_surface ON simulations (surface);
+CREATE INDEX simulations_by_vehicle ON simulations (vehicle);
+CREATE INDEX simulations_by_result ON simulations (result);
+CREATE INDEX simulations_by_ledger ON simulations (ledger);
+CREATE INDEX pinned_results ON simulations (result) WHERE pinned = 1;
+CREATE INDEX unfinished_simulations ON simulations (id) WHERE state IN (1, 2);
+CREATE INDEX ended_simulations ON simulations (end_time) WHERE state >= 3 AND pinned = 0;
+CREATE TRIGGER simulations_are_counted AFTER INSERT ON simulations
+BEGIN UPDATE projects SET simulations = simulations + 1 WHERE name = NEW.project; END;
+CREATE TRIGGER removed_simulations_are_not_counted AFTER DELETE ON simulations
+BEGIN UPDATE projects SET simulations = simulations - 1 WHERE name = OLD.project; END;
+CREATE TRIGGER simulations_stay_in_their_project BEFORE UPDATE OF project, number ON simulations
+BEGIN SELECT RAISE(ABORT, 'a simulation keeps its project and its number'); END;
+CREATE TRIGGER states_move_forward BEFORE UPDATE OF state ON simulations
+WHEN NOT (OLD.state = 1 AND NEW.state IN (2, 3, 4, 5) AND NEW.attempt = OLD.attempt OR
+          OLD.state = 2 AND NEW.state IN (3, 4, 5) AND NEW.attempt = OLD.attempt OR
+          OLD.state = 2 AND NEW.state = 1 AND NEW.attempt = OLD.attempt + 1)
+BEGIN SELECT RAISE(ABORT, 'no such change of state'); END;
+CREATE TRIGGER states_change_with_an_event BEFORE UPDATE OF state ON simulations
+WHEN NEW.sequence <> OLD.sequence + 1
+BEGIN SELECT RAISE(ABORT, 'a change of state is an event'); END;
+CREATE TRIGGER running_means_leased BEFORE UPDATE OF state ON simulations
+WHEN (NEW.state = 2) <> (NEW.lease_worker IS NOT NULL)
+BEGIN SELECT RAISE(ABORT, 'a simulation runs under a lease'); END;
+
+CREATE VIEW simulation_names AS
+SELECT id AS simulation, CASE project WHEN 'default' THEN '' ELSE 'projects/' || project || '/' END ||
+                         'simulations/' || number AS name
+FROM simulations;
 
 CREATE TABLE simulation_labels (
   key TEXT NOT NULL,
@@ -231,161 +186,6 @@ CREATE TABLE simulation_labels (
   PRIMARY KEY (key, value, simulation)
 ) STRICT, WITHOUT ROWID;
 CREATE INDEX labels_of_simulation ON simulation_labels (simulation);
-
-CREATE INDEX simulations_by_time ON simulations (create_time);
-CREATE INDEX simulations_by_state ON simulations (state, create_time);
-CREATE INDEX simulations_by_lubricant ON simulations (lubricant, create_time);
-CREATE INDEX simulations_by_result ON simulations (result);
-CREATE INDEX simulations_by_ledger ON simulations (ledger);
-CREATE INDEX ended_simulations ON simulations (end_time) WHERE state >= 3 AND pinned = 0;
-)sql";
-
-inline constexpr char kSchema5[] = R"sql(
-ALTER TABLE results ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
-ALTER TABLE results ADD COLUMN stored_bytes INTEGER NOT NULL DEFAULT 0;
-ALTER TABLE history_blocks ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
-
-CREATE INDEX results_by_size ON results (id, stored_bytes);
-CREATE INDEX pinned_results ON simulations (result) WHERE pinned = 1;
-)sql";
-
-inline constexpr char kSchema6[] = R"sql(
-ALTER TABLE simulations ADD COLUMN principal TEXT NOT NULL DEFAULT '';
-ALTER TABLE simulations ADD COLUMN scheduling_class INTEGER NOT NULL DEFAULT 0
-  CHECK (scheduling_class BETWEEN 0 AND 2);
-ALTER TABLE simulations ADD COLUMN lease_worker TEXT CHECK (length(lease_worker) > 0);
-ALTER TABLE simulations ADD COLUMN lease_expire_time INTEGER
-  CHECK ((lease_worker IS NULL) = (lease_expire_time IS NULL));
-
-UPDATE simulations SET principal = client;
-UPDATE simulations SET lease_worker = 'local', lease_expire_time = 0 WHERE state = 2;
-
-CREATE TRIGGER running_means_leased BEFORE UPDATE OF state ON simulations
-WHEN (NEW.state = 2) <> (NEW.lease_worker IS NOT NULL)
-BEGIN SELECT RAISE(ABORT, 'a simulation runs under a lease'); END;
-)sql";
-
-// Everything from before there were projects belongs to the project `default`. The numbers of its
-// simulations go on where the rows were.
-inline constexpr char kSchema7[] = R"sql(
-CREATE TABLE projects (
-  name TEXT PRIMARY KEY CHECK (length(name) BETWEEN 1 AND 63),
-  last_number INTEGER NOT NULL DEFAULT 0 CHECK (last_number >= 0)
-) STRICT, WITHOUT ROWID;
-INSERT INTO projects VALUES ('default', max(
-  coalesce((SELECT seq FROM sqlite_sequence WHERE name = 'simulations'), 0),
-  coalesce((SELECT max(id) FROM simulations), 0)));
-
-ALTER TABLE simulations ADD COLUMN project TEXT NOT NULL DEFAULT 'default';
-ALTER TABLE simulations ADD COLUMN number INTEGER NOT NULL DEFAULT 0;
-UPDATE simulations SET number = id;
-ALTER TABLE results ADD COLUMN project TEXT NOT NULL DEFAULT 'default';
-
-CREATE VIEW simulation_names AS
-SELECT id AS simulation, CASE project WHEN 'default' THEN '' ELSE 'projects/' || project || '/' END ||
-                         'simulations/' || number AS name
-FROM simulations;
-
-DROP INDEX one_simulation_per_request;
-CREATE UNIQUE INDEX one_simulation_per_request ON simulations (project, request_id);
-CREATE UNIQUE INDEX simulations_by_number ON simulations (project, number);
-DROP INDEX simulations_by_time;
-CREATE INDEX simulations_by_time ON simulations (project, create_time, number);
-DROP INDEX simulations_by_state;
-CREATE INDEX simulations_by_state ON simulations (project, state, create_time, number);
-DROP INDEX one_result_per_input;
-CREATE UNIQUE INDEX one_result_per_input ON results (project, input_hash, model_version, platform)
-WHERE platform <> '';
-
-CREATE TRIGGER simulations_stay_in_their_project BEFORE UPDATE OF project, number ON simulations
-BEGIN SELECT RAISE(ABORT, 'a simulation keeps its project and its number'); END;
-CREATE TRIGGER results_stay_in_their_project BEFORE UPDATE OF project ON results
-BEGIN SELECT RAISE(ABORT, 'a result keeps its project'); END;
-)sql";
-
-// The order of old events: by time, and never against the order within a simulation, even if the
-// clock was set back between two of its events.
-inline constexpr char kSchema8[] = R"sql(
-ALTER TABLE events RENAME TO events_of_schema_7;
-
-CREATE TABLE events (
-  number INTEGER PRIMARY KEY AUTOINCREMENT,
-  simulation INTEGER NOT NULL,
-  sequence INTEGER NOT NULL CHECK (sequence >= 1),
-  time INTEGER NOT NULL,
-  state INTEGER NOT NULL CHECK (state BETWEEN 0 AND 5),
-  attempt INTEGER NOT NULL CHECK (attempt >= 1),
-  reason TEXT NOT NULL,
-  project TEXT,
-  simulation_number INTEGER,
-  UNIQUE (simulation, sequence),
-  CHECK ((state = 0) = (project IS NOT NULL)),
-  CHECK ((state = 0) = (simulation_number IS NOT NULL))
-) STRICT;
-
-INSERT INTO events (simulation, sequence, time, state, attempt, reason)
-SELECT simulation, sequence, time, state, attempt, reason FROM events_of_schema_7
-ORDER BY max(time) OVER (PARTITION BY simulation ORDER BY sequence), simulation, sequence;
-DROP TABLE events_of_schema_7;
-
-CREATE TRIGGER events_have_a_simulation BEFORE INSERT ON events
-WHEN NOT EXISTS (SELECT 1 FROM simulations WHERE id = NEW.simulation)
-BEGIN SELECT RAISE(ABORT, 'an event belongs to a simulation'); END;
-
-CREATE INDEX deletions ON events (number) WHERE state = 0;
-CREATE UNIQUE INDEX deleted_simulations ON events (project, simulation_number) WHERE state = 0;
-
-CREATE TABLE event_log (
-  id INTEGER PRIMARY KEY CHECK (id = 1),
-  deletions INTEGER NOT NULL CHECK (deletions >= 0),
-  forgotten INTEGER NOT NULL CHECK (forgotten >= 0)
-) STRICT;
-INSERT INTO event_log VALUES (1, 0, 0);
-
-CREATE INDEX simulations_by_gear_set ON simulations (gear_set);
-CREATE INDEX simulations_by_surface ON simulations (surface);
-CREATE INDEX simulations_by_vehicle ON simulations (vehicle);
-)sql";
-
-inline constexpr char kSchema9[] = R"sql(
-CREATE TABLE tokens (
-  hash TEXT PRIMARY KEY CHECK (length(hash) = 64),
-  name TEXT NOT NULL CHECK (length(name) BETWEEN 1 AND 63),
-  scope INTEGER NOT NULL CHECK (scope BETWEEN 1 AND 3),
-  projects TEXT NOT NULL,
-  create_time INTEGER NOT NULL,
-  expire_time INTEGER,
-  revoke_time INTEGER
-) STRICT, WITHOUT ROWID;
-CREATE INDEX tokens_by_name ON tokens (name);
-CREATE TRIGGER tokens_stay BEFORE DELETE ON tokens
-BEGIN SELECT RAISE(ABORT, 'a token is revoked, never removed'); END;
-CREATE TRIGGER tokens_stay_revoked BEFORE UPDATE ON tokens
-WHEN OLD.revoke_time IS NOT NULL
-BEGIN SELECT RAISE(ABORT, 'a revoked token never changes'); END;
-
-CREATE TABLE token_log (
-  id INTEGER PRIMARY KEY CHECK (id = 1),
-  change INTEGER NOT NULL,
-  acknowledged INTEGER NOT NULL,
-  page_token_key BLOB NOT NULL CHECK (length(page_token_key) = 32)
-) STRICT;
-)sql";
-
-// The events of a project count from 1 in new projects. Those of older ones keep their numbers, and
-// the next one follows the last number of all projects, so that clients resume without a gap.
-inline constexpr char kSchema10[] = R"sql(
-ALTER TABLE projects ADD COLUMN last_event INTEGER NOT NULL DEFAULT 0 CHECK (last_event >= 0);
-ALTER TABLE projects ADD COLUMN deletions INTEGER NOT NULL DEFAULT 0 CHECK (deletions >= 0);
-ALTER TABLE projects ADD COLUMN forgotten_event INTEGER NOT NULL DEFAULT 0
-  CHECK (forgotten_event BETWEEN 0 AND last_event);
-UPDATE projects SET
-  last_event = coalesce((SELECT seq FROM sqlite_sequence WHERE name = 'events'), 0),
-  deletions = (SELECT count(*) FROM events e WHERE e.state = 0 AND e.project = projects.name);
-UPDATE projects SET forgotten_event = (SELECT forgotten FROM event_log);
-DROP TABLE event_log;
-
-ALTER TABLE events RENAME TO events_of_schema_9;
 
 CREATE TABLE events (
   project TEXT NOT NULL,
@@ -401,30 +201,17 @@ CREATE TABLE events (
   UNIQUE (simulation, sequence),
   CHECK ((state = 0) = (simulation_number IS NOT NULL))
 ) STRICT, WITHOUT ROWID;
-
-INSERT INTO events
-SELECT coalesce(e.project, s.project), e.number, e.simulation, e.sequence, e.time, e.state,
-       e.attempt, e.reason, e.simulation_number
-FROM events_of_schema_9 e LEFT JOIN simulations s ON s.id = e.simulation;
-DROP TABLE events_of_schema_9;
-
+CREATE INDEX deletions ON events (project, number) WHERE state = 0;
+CREATE UNIQUE INDEX deleted_simulations ON events (project, simulation_number) WHERE state = 0;
 CREATE TRIGGER events_have_a_simulation BEFORE INSERT ON events
 WHEN NOT EXISTS (SELECT 1 FROM simulations WHERE id = NEW.simulation AND project = NEW.project)
 BEGIN SELECT RAISE(ABORT, 'an event belongs to a simulation of its project'); END;
-
-CREATE INDEX deletions ON events (project, number) WHERE state = 0;
-CREATE UNIQUE INDEX deleted_simulations ON events (project, simulation_number) WHERE state = 0;
-
-CREATE INDEX results_by_project ON results (project, stored_bytes);
-ALTER TABLE tokens ADD COLUMN calls_per_second REAL CHECK (calls_per_second > 0);
-ALTER TABLE tokens ADD COLUMN streams INTEGER CHECK (streams > 0);
-ALTER TABLE tokens ADD COLUMN processor_hours REAL CHECK (processor_hours > 0);
-)sql";
-
-// Tiles are small beside their blobs, which are of kilobytes: only tiles are without row ids.
-inline constexpr char kSchema11[] = R"sql(
-ALTER TABLE projects ADD COLUMN last_campaign INTEGER NOT NULL DEFAULT 0
-  CHECK (last_campaign >= 0);
+CREATE TRIGGER events_follow_one_another BEFORE INSERT ON events
+WHEN NEW.sequence <> 1 + (SELECT coalesce(max(sequence), 0) FROM events
+                          WHERE simulation = NEW.simulation)
+BEGIN SELECT RAISE(ABORT, 'an event follows the last one'); END;
+CREATE TRIGGER events_never_change BEFORE UPDATE ON events
+BEGIN SELECT RAISE(ABORT, 'an event never changes'); END;
 
 CREATE TABLE campaigns (
   id INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -434,6 +221,7 @@ CREATE TABLE campaigns (
   stop_reason TEXT NOT NULL DEFAULT '',
   stop_message TEXT NOT NULL DEFAULT '',
   lost_attempts INTEGER NOT NULL DEFAULT 0 CHECK (lost_attempts >= 0),
+  lost_candidates INTEGER NOT NULL DEFAULT 0 CHECK (lost_candidates >= 0),
   create_time INTEGER NOT NULL,
   end_time INTEGER,
   request_id TEXT CHECK (length(request_id) > 0),
@@ -472,54 +260,16 @@ CREATE INDEX campaigns_by_lubricant ON campaigns (lubricant);
 CREATE INDEX campaigns_by_gear_set ON campaigns (gear_set);
 CREATE INDEX campaigns_by_surface ON campaigns (surface);
 CREATE INDEX campaigns_by_vehicle ON campaigns (vehicle);
-CREATE TRIGGER campaigns_end_once BEFORE UPDATE ON campaigns
-WHEN OLD.state >= 3
-BEGIN SELECT RAISE(ABORT, 'a campaign that has ended never changes'); END;
+CREATE TRIGGER campaigns_end_once BEFORE UPDATE OF state, stop_reason, stop_message, create_time,
+  end_time, request_id, request_hash, input_hash, model_version, platform, client, principal,
+  lubricant, gear_set, surface, vehicle, candidates, conditions, points_done, points_refused,
+  cost_seconds, processor_seconds, candidate_table ON campaigns
+WHEN OLD.state >= 3 AND NOT
+  (OLD.state = 3 AND NEW.state = 1 AND NEW.candidates > OLD.candidates)
+BEGIN SELECT RAISE(ABORT, 'a campaign that has ended changes only by further candidates'); END;
 CREATE TRIGGER campaigns_stay_in_their_project BEFORE UPDATE OF project, number ON campaigns
 BEGIN SELECT RAISE(ABORT, 'a campaign keeps its project and its number'); END;
 
-CREATE TABLE campaign_tiles (
-  campaign INTEGER NOT NULL REFERENCES campaigns (id) ON DELETE CASCADE,
-  first_row INTEGER NOT NULL CHECK (first_row >= 0),
-  rows INTEGER NOT NULL CHECK (rows BETWEEN 1 AND 4096),
-  PRIMARY KEY (campaign, first_row)
-) STRICT, WITHOUT ROWID;
-CREATE TRIGGER tiles_never_change BEFORE UPDATE ON campaign_tiles
-BEGIN SELECT RAISE(ABORT, 'a tile never changes'); END;
-
-CREATE TABLE campaign_blobs (
-  campaign INTEGER NOT NULL REFERENCES campaigns (id) ON DELETE CASCADE,
-  number INTEGER NOT NULL CHECK (number >= 0),
-  first_row INTEGER NOT NULL,
-  checksum INTEGER NOT NULL,
-  data BLOB NOT NULL,
-  UNIQUE (campaign, number, first_row)
-) STRICT;
-
-CREATE TABLE campaign_refusals (
-  campaign INTEGER NOT NULL REFERENCES campaigns (id) ON DELETE CASCADE,
-  number INTEGER NOT NULL CHECK (number >= 1),
-  reason TEXT NOT NULL,
-  message TEXT NOT NULL,
-  PRIMARY KEY (campaign, number)
-) STRICT, WITHOUT ROWID;
-)sql";
-
-inline constexpr char kSchema12[] = R"sql(
-ALTER TABLE campaigns ADD COLUMN lost_candidates INTEGER NOT NULL DEFAULT 0
-  CHECK (lost_candidates >= 0);
-
-CREATE TABLE campaign_suspects (
-  campaign INTEGER NOT NULL REFERENCES campaigns (id) ON DELETE CASCADE,
-  first_row INTEGER NOT NULL CHECK (first_row >= 0),
-  rows INTEGER NOT NULL CHECK (rows >= 1),
-  is_begun INTEGER NOT NULL CHECK (is_begun IN (0, 1)),
-  lost_attempts INTEGER NOT NULL CHECK (lost_attempts >= 0),
-  PRIMARY KEY (campaign, first_row)
-) STRICT, WITHOUT ROWID;
-)sql";
-
-inline constexpr char kSchema13[] = R"sql(
 CREATE TABLE campaign_labels (
   key TEXT NOT NULL,
   value TEXT NOT NULL,
@@ -545,40 +295,67 @@ CREATE TABLE campaign_appends (
 ) STRICT, WITHOUT ROWID;
 CREATE UNIQUE INDEX one_append_per_request ON campaign_appends (campaign, request_id);
 
-DROP TRIGGER campaigns_end_once;
-CREATE TRIGGER campaigns_end_once BEFORE UPDATE OF state, stop_reason, stop_message, create_time,
-  end_time, request_id, request_hash, input_hash, model_version, platform, client, principal,
-  lubricant, gear_set, surface, vehicle, candidates, conditions, points_done, points_refused,
-  cost_seconds, processor_seconds, candidate_table ON campaigns
-WHEN OLD.state >= 3 AND NOT
-  (OLD.state = 3 AND NEW.state = 1 AND NEW.candidates > OLD.candidates)
-BEGIN SELECT RAISE(ABORT, 'a campaign that has ended changes only by further candidates'); END;
+-- Tiles are small beside their blobs, which are of kilobytes: only tiles are without row ids.
+CREATE TABLE campaign_tiles (
+  campaign INTEGER NOT NULL REFERENCES campaigns (id) ON DELETE CASCADE,
+  first_row INTEGER NOT NULL CHECK (first_row >= 0),
+  rows INTEGER NOT NULL CHECK (rows BETWEEN 1 AND 4096),
+  PRIMARY KEY (campaign, first_row)
+) STRICT, WITHOUT ROWID;
+CREATE TRIGGER tiles_never_change BEFORE UPDATE ON campaign_tiles
+BEGIN SELECT RAISE(ABORT, 'a tile never changes'); END;
+
+CREATE TABLE campaign_blobs (
+  campaign INTEGER NOT NULL REFERENCES campaigns (id) ON DELETE CASCADE,
+  number INTEGER NOT NULL CHECK (number >= 0),
+  first_row INTEGER NOT NULL,
+  checksum INTEGER NOT NULL,
+  data BLOB NOT NULL,
+  UNIQUE (campaign, number, first_row)
+) STRICT;
+
+CREATE TABLE campaign_refusals (
+  campaign INTEGER NOT NULL REFERENCES campaigns (id) ON DELETE CASCADE,
+  number INTEGER NOT NULL CHECK (number >= 1),
+  reason TEXT NOT NULL,
+  message TEXT NOT NULL,
+  PRIMARY KEY (campaign, number)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE campaign_suspects (
+  campaign INTEGER NOT NULL REFERENCES campaigns (id) ON DELETE CASCADE,
+  first_row INTEGER NOT NULL CHECK (first_row >= 0),
+  rows INTEGER NOT NULL CHECK (rows >= 1),
+  is_begun INTEGER NOT NULL CHECK (is_begun IN (0, 1)),
+  lost_attempts INTEGER NOT NULL CHECK (lost_attempts >= 0),
+  PRIMARY KEY (campaign, first_row)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE tokens (
+  hash TEXT PRIMARY KEY CHECK (length(hash) = 64),
+  name TEXT NOT NULL CHECK (length(name) BETWEEN 1 AND 63),
+  scope INTEGER NOT NULL CHECK (scope BETWEEN 1 AND 3),
+  projects TEXT NOT NULL,
+  create_time INTEGER NOT NULL,
+  expire_time INTEGER,
+  revoke_time INTEGER,
+  calls_per_second REAL CHECK (calls_per_second > 0),
+  streams INTEGER CHECK (streams > 0),
+  processor_hours REAL CHECK (processor_hours > 0)
+) STRICT, WITHOUT ROWID;
+CREATE INDEX tokens_by_name ON tokens (name);
+CREATE TRIGGER tokens_stay BEFORE DELETE ON tokens
+BEGIN SELECT RAISE(ABORT, 'a token is revoked, never removed'); END;
+CREATE TRIGGER tokens_stay_revoked BEFORE UPDATE ON tokens
+WHEN OLD.revoke_time IS NOT NULL
+BEGIN SELECT RAISE(ABORT, 'a revoked token never changes'); END;
+
+CREATE TABLE token_log (
+  id INTEGER PRIMARY KEY CHECK (id = 1),
+  change INTEGER NOT NULL,
+  acknowledged INTEGER NOT NULL,
+  page_token_key BLOB NOT NULL CHECK (length(page_token_key) = 32)
+) STRICT;
 )sql";
-
-// The total of a list without a filter is read, not counted.
-inline constexpr char kSchema14[] = R"sql(
-ALTER TABLE projects ADD COLUMN simulations INTEGER NOT NULL DEFAULT 0 CHECK (simulations >= 0);
-UPDATE projects SET simulations =
-  (SELECT count(*) FROM simulations s WHERE s.project = projects.name);
-CREATE TRIGGER simulations_are_counted AFTER INSERT ON simulations
-BEGIN UPDATE projects SET simulations = simulations + 1 WHERE name = NEW.project; END;
-CREATE TRIGGER removed_simulations_are_not_counted AFTER DELETE ON simulations
-BEGIN UPDATE projects SET simulations = simulations - 1 WHERE name = OLD.project; END;
-)sql";
-
-/// The triggers of each new table `events`: those of schemas 3, 8 and 10.
-inline constexpr char kEventTriggers[] = R"sql(
-CREATE TRIGGER events_follow_one_another BEFORE INSERT ON events
-WHEN NEW.sequence <> 1 + (SELECT coalesce(max(sequence), 0) FROM events
-                          WHERE simulation = NEW.simulation)
-BEGIN SELECT RAISE(ABORT, 'an event follows the last one'); END;
-
-CREATE TRIGGER events_never_change BEFORE UPDATE ON events
-BEGIN SELECT RAISE(ABORT, 'an event never changes'); END;
-)sql";
-
-inline constexpr const char* kSchemas[] = {kSchema1,  kSchema2,  kSchema3,  kSchema4, kSchema5,
-                                           kSchema6,  kSchema7,  kSchema8,  kSchema9, kSchema10,
-                                           kSchema11, kSchema12, kSchema13, kSchema14};
 
 }  // namespace tribodyn::server

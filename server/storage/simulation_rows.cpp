@@ -40,8 +40,7 @@ std::optional<std::int64_t> result_row(Connection& db, const std::string& projec
                                        const ResultKey& key) {
   Prepared query(db,
                  "SELECT id FROM results "
-                 "WHERE project = ? AND input_hash = ? AND model_version = ? AND platform = ? AND "
-                 "platform <> ''",
+                 "WHERE project = ? AND input_hash = ? AND model_version = ? AND platform = ?",
                  project, key.input_hash, key.model_version, key.platform);
   return query.first([](SQLite::Statement& row) { return row.getColumn(0).getInt64(); });
 }

@@ -9,7 +9,6 @@
 #include "server/storage/database_check.h"
 #include "server/storage/durable_files.h"
 #include "server/storage/resource_rows.h"
-#include "server/storage/schema.h"
 #include "server/storage/store_access.h"
 #include "server/storage/translate_error.h"
 
@@ -129,12 +128,12 @@ void Store::run_read(const CallLimits& limits, const GroupCommit::Action& action
   }
 }
 
-Store::Store(const std::filesystem::path& database)
+Store::Store(const std::filesystem::path& database, const SchemaSteps& steps)
     : path_(usable_path(database)),
       lock_(path_),
       writer_(open_writer(path_)),
       group_commit_(writer_, writer_mutex_) {
-  open_schema();
+  open_schema(steps);
   writer_.heed_limits();
   try {
     // The writer keeps its statement journal (old pages, a few hundred KiB) in memory, so that it
@@ -167,9 +166,9 @@ Store::~Store() {
   }
 }
 
-void Store::open_schema() {
-  run_write({}, [this](Connection& db) {
-    require_servable(db, path_);
+void Store::open_schema(const SchemaSteps& steps) {
+  run_write({}, [&](Connection& db) {
+    require_servable(db, path_, steps);
     const int version = db.execAndGet("PRAGMA user_version").getInt();
     if (sqlite3_db_readonly(db.getHandle(), "main") == 1) {
       throw StoreError(StoreError::Kind::kReadOnly,
@@ -182,10 +181,10 @@ void Store::open_schema() {
     }
     db.exec("PRAGMA synchronous = FULL");
     db.exec("PRAGMA foreign_keys = ON");
-    if (0 < version && version < kSchemaVersion) {
-      migration_backup_ = backup_before_migration(path_, version);
+    if (version < static_cast<int>(steps.size())) {
+      if (version > 0) migration_backup_ = backup_before_migration(path_, version);
+      migrate(db, version, steps);
     }
-    if (version < kSchemaVersion) migrate(db, version, system_time());
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     const int renewed = add_missing_properties(db);
     transaction.commit();

@@ -23,6 +23,7 @@
 #include "server/storage/recent_events.h"
 #include "server/storage/removal.h"
 #include "server/storage/retention.h"
+#include "server/storage/schema.h"
 #include "server/storage/store_error.h"
 #include "server/storage/stored_campaign.h"
 #include "server/storage/stored_resource.h"
@@ -39,7 +40,7 @@ namespace tribodyn::server {
 class Store {
  public:
   /// Opens or creates the database and locks it against other servers.
-  explicit Store(const std::filesystem::path& database);
+  explicit Store(const std::filesystem::path& database, const SchemaSteps& steps = schema_steps());
   /// If another file took the place of the database, sets the write-ahead log aside, which would
   /// destroy that file (DatabaseFiles::set_log_aside), and tells the log of the process.
   ~Store();
@@ -277,7 +278,7 @@ class Store {
                     const CallLimits& limits = {});
 
  private:
-  void open_schema();
+  void open_schema(const SchemaSteps& steps);
   void require_place() const;
   /// The arguments must outlive the result.
   RecentEvents::Source event_source(const std::string& project, const CallLimits& limits);

@@ -11,9 +11,9 @@ class StoreError : public std::runtime_error {
  public:
   enum class Kind {
     kCannotOpen,
-    kInUse,        ///< another server uses it
-    kNewerSchema,  ///< written by a newer tribodynd
-    kForeign,      ///< a database of another program
+    kInUse,         ///< another server uses it
+    kOtherVersion,  ///< written by another version of tribodynd
+    kForeign,       ///< a database of another program
     kCorrupt,
     kReadOnly,
     kDataLoss,   ///< stored bytes differ from their checksum

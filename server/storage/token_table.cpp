@@ -4,7 +4,6 @@
 
 #include "server/storage/connections.h"
 #include "server/storage/database_check.h"
-#include "server/storage/schema.h"
 #include "server/storage/store_error.h"
 #include "server/storage/translate_error.h"
 
@@ -66,12 +65,12 @@ auto TokenTable::translated(const Action& action) {
   }
 }
 
-TokenTable::TokenTable(const std::filesystem::path& database)
+TokenTable::TokenTable(const std::filesystem::path& database, const SchemaSteps& steps)
     : path_(database), connection_(open_for_tokens(database)) {
-  translated([this] {
-    check_identity(connection_, path_);
+  translated([&] {
+    check_identity(connection_, path_, steps);
     const int version = connection_.execAndGet("PRAGMA user_version").getInt();
-    if (version < kSchemaVersion) {
+    if (version < static_cast<int>(steps.size())) {
       throw StoreError(StoreError::Kind::kFailed,
                        "database " + path_.string() + " has schema " + std::to_string(version) +
                            ", used by an older tribodynd; stop that one first");

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/storage/connection.h"
+#include "server/storage/schema.h"
 #include "server/storage/stored_token.h"
 
 namespace tribodyn::server {
@@ -17,7 +18,8 @@ namespace tribodyn::server {
 class TokenTable {
  public:
   /// Requires a database of the present schema. Another object may have it open for writing.
-  explicit TokenTable(const std::filesystem::path& database);
+  explicit TokenTable(const std::filesystem::path& database,
+                      const SchemaSteps& steps = schema_steps());
 
   /// Returns all tokens by name and time, also those that are no longer valid.
   std::vector<StoredToken> all();

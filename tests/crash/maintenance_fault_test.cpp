@@ -20,7 +20,6 @@
 #include "tests/crash/faulty_vfs.h"
 #include "tests/crash/file_call_hook.h"
 #include "tests/service/support.h"
-#include "tests/support/paths.h"
 #include "tests/support/run_length.h"
 #include "tribodyn/v1/lubricants.pb.h"
 #include "tribodyn/v1/results.pb.h"
@@ -31,6 +30,7 @@ namespace {
 using server::backup_database;
 using server::check_database;
 using server::restore_database;
+using server::SchemaSteps;
 using server::Store;
 using server::StoreError;
 using server::TemporaryFolder;
@@ -54,8 +54,8 @@ void fill(const std::string& database, int simulations) {
   ASSERT_EQ(code, 0);
 }
 
-int simulations_of(const std::string& database) {
-  Store store(database);
+int simulations_of(const std::string& database, const SchemaSteps& steps = server::schema_steps()) {
+  Store store(database, steps);
   return static_cast<int>(store.simulations({.limit = 100, .byte_limit = 1 << 20}).rows.size());
 }
 
@@ -72,6 +72,11 @@ std::vector<std::string> files_with(const TemporaryFolder& folder, const std::st
     if (name.find(part) != std::string::npos) out.push_back(name);
   }
   return out;
+}
+
+int schema_of(const std::string& database) {
+  SQLite::Database db(database, SQLite::OPEN_READWRITE);
+  return db.execAndGet("PRAGMA user_version").getInt();
 }
 
 class MaintenanceFault : public testing::Test {
@@ -106,25 +111,60 @@ class MaintenanceFault : public testing::Test {
     }
   }
 
-  /// Restores the backup over a database with a log, once for each n; `hook` handles the n-th call.
-  /// The hook returns an errno or does not return.
-  template <class Meet>
-  void restore_with_a_fault_at_each_call(const Meet& meet) {
+  std::string place_backup(const TemporaryFolder& place) const {
+    std::filesystem::copy_file(backup_, place.file("db"));
+    return place.file("db");
+  }
+
+  /// Checks that a finished or interrupted migration left the old or the new schema, and with the
+  /// new one a backup.
+  void expect_old_or_migrated(const std::string& database, bool is_migrated,
+                              const std::string& trace) const {
+    const int schema = schema_of(database);
+    EXPECT_TRUE(schema == 2 || (!is_migrated && schema == 1)) << schema << trace;
+    const SchemaSteps steps = schema == 2 ? server::two_schemas() : server::schema_steps();
+    EXPECT_THAT(check_database(database, nullptr, steps), IsEmpty()) << trace;
+    EXPECT_EQ(simulations_of(database, steps), kInBackup) << trace;
+    if (schema == 2) {
+      EXPECT_THAT(check_database(database + ".schema-1"), IsEmpty()) << trace;
+      EXPECT_EQ(simulations_of(database + ".schema-1"), kInBackup) << trace;
+    }
+  }
+
+  /// Runs `action` on a database that `place_database` places, once for each n; `meet` handles the
+  /// n-th call: it returns an errno or does not return. Then calls `check`.
+  template <class Place, class Action, class Check, class Meet>
+  void fault_each_call(const Place& place_database, const Action& action, const Check& check,
+                       const Meet& meet) {
     int n = 1;
     for (bool was_met = true; was_met && n < kMostCalls; ++n) {
       const TemporaryFolder place(TemporaryFolder::Kind::kMemory);
-      const std::string database = place_former(place);
+      const std::string database = place_database(place);
       was_met =
           run_in_child([&] {
             int calls = 0;
             const FileCallHook hook([&](const std::string&) { return ++calls == n ? meet() : 0; });
-            restore_database(backup_, database);
+            action(database);
             if (calls >= n) _exit(2);  // e.g. SQLite ignores the error of syncing a folder
           }) != 0;
-      expect_former_or_new(database, !was_met, "call " + std::to_string(n));
+      check(database, !was_met, "call " + std::to_string(n));
     }
-    EXPECT_GE(n, 8) << "calls that this test must meet: syncs, removals, a link and a rename";
+    EXPECT_GE(n, 8) << "calls that this test must meet: syncs, removals and renames";
     EXPECT_LT(n, kMostCalls);
+  }
+
+  template <class Meet>
+  void restore_with_a_fault_at_each_call(const Meet& meet) {
+    fault_each_call([this](const auto& place) { return place_former(place); },
+                    [this](const auto& database) { restore_database(backup_, database); },
+                    [this](const auto&... found) { expect_former_or_new(found...); }, meet);
+  }
+
+  template <class Meet>
+  void migrate_with_a_fault_at_each_call(const Meet& meet) {
+    fault_each_call([this](const auto& place) { return place_backup(place); },
+                    [](const auto& database) { Store store(database, server::two_schemas()); },
+                    [this](const auto&... found) { expect_old_or_migrated(found...); }, meet);
   }
 
   TemporaryFolder folder_{TemporaryFolder::Kind::kMemory};
@@ -137,6 +177,14 @@ TEST_F(MaintenanceFault, ARestoreKilledAtAnyCallLeavesTheFormerOrTheNewDatabase)
 
 TEST_F(MaintenanceFault, ARestoreWhoseCallsFailLeavesTheFormerOrTheNewDatabase) {
   restore_with_a_fault_at_each_call([] { return EIO; });
+}
+
+TEST_F(MaintenanceFault, AMigrationKilledAtAnyCallLeavesTheOldDatabaseOrTheNewOneWithABackup) {
+  migrate_with_a_fault_at_each_call([] { return kill(getpid(), SIGKILL); });
+}
+
+TEST_F(MaintenanceFault, AMigrationWhoseCallsFailLeavesTheOldDatabaseOrTheNewOneWithABackup) {
+  migrate_with_a_fault_at_each_call([] { return EIO; });
 }
 
 TEST_F(MaintenanceFault, ABackupWhoseCallsFailLeavesNoFile) {
@@ -229,35 +277,16 @@ TEST_F(MaintenanceOnAFaultyDisk, ARestoreLeavesTheFormerOrTheNewDatabase) {
                       });
 }
 
-int schema_of(const std::string& database) {
-  SQLite::Database db(database, SQLite::OPEN_READWRITE);
-  return db.execAndGet("PRAGMA user_version").getInt();
-}
-
 TEST_F(MaintenanceOnAFaultyDisk, AMigrationLeavesTheOldDatabaseOrTheNewOneWithABackup) {
   std::optional<TemporaryFolder> place;
-  std::string database;
-  const auto renew = [&] {
-    place.emplace(TemporaryFolder::Kind::kMemory);
-    database = place->file("db");
-    std::filesystem::copy_file(test_data_file("schemas/schema_4.sqlite"), database);
-    std::filesystem::permissions(database, std::filesystem::perms::owner_all);
-    // Permissions as a server sets them; the stored file was copied without its mode.
-    SQLite::Database(database, SQLite::OPEN_READWRITE).exec("PRAGMA journal_mode = WAL");
-  };
-  renew();
-  fail_each_operation([&] { Store store(database); },
+  place.emplace(TemporaryFolder::Kind::kMemory);
+  std::string database = place_backup(*place);
+  fail_each_operation([&] { Store store(database, server::two_schemas()); },
                       [&](bool is_done, const std::string& trace) {
-                        EXPECT_THAT(check_database(database), IsEmpty()) << trace;
-                        const int schema = schema_of(database);
-                        EXPECT_TRUE(schema == server::kSchemaVersion || (!is_done && schema == 4))
-                            << trace;
-                        if (schema != 4) {
-                          EXPECT_EQ(schema_of(database + ".schema-4"), 4) << trace;
-                          EXPECT_THAT(check_database(database + ".schema-4"), IsEmpty()) << trace;
-                        }
+                        expect_old_or_migrated(database, is_done, trace);
                         EXPECT_THAT(files_with(*place, ".new-"), IsEmpty()) << trace;
-                        renew();
+                        place.emplace(TemporaryFolder::Kind::kMemory);
+                        database = place_backup(*place);
                       });
 }
 

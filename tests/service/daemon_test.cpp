@@ -528,6 +528,20 @@ TEST(Flags, ACheckFindsProblemsAndCreatesNothing) {
   EXPECT_THAT(log, HasSubstr("thread"));
 }
 
+TEST(Flags, ADatabaseOfAnotherVersionHasAnExitCodeOfItsOwn) {
+  const TemporaryFolder folder;
+  const std::string database = folder.file("db");
+  { Store store(database); }
+  SQLite::Database(database, SQLite::OPEN_READWRITE).exec("DELETE FROM format");
+  for (std::vector<std::string> arguments :
+       {std::vector<std::string>{}, {"--check"}, {"check"}, {"tokens", "list"}}) {
+    arguments.insert(arguments.end(), {"--database", database});
+    std::string log;
+    EXPECT_EQ(run_briefly(arguments, &log), 6) << log;
+    EXPECT_THAT(log, HasSubstr(database + " was written by another development version"));
+  }
+}
+
 TEST(Flags, TheServiceManagerIsNotifiedOfStartAndStop) {
   const TemporaryFolder folder;
   const std::string path = folder.file("notify");

@@ -23,6 +23,7 @@
 #include "server/simulation/input_fields.h"
 #include "server/simulation/input_hash.h"
 #include "server/simulation/simulation_inputs.h"
+#include "server/storage/resource_lookup.h"
 #include "server/support/sha256.h"
 #include "tests/service/contract_methods.h"
 #include "tests/service/support.h"
@@ -45,6 +46,18 @@ std::shared_ptr<const Resource> changed(const std::shared_ptr<const Resource>& r
   auto copy = std::make_shared<Resource>(*resource);
   change(*copy);
   return copy;
+}
+
+TEST(AcceptedNames, StandForWhatTheRequestLeavesOut) {
+  v1::Simulation request;
+  request.set_surface("surfaces/stated");
+  set_accepted_names({.gear_set = "gearSets/default-then@2",
+                      .surface = "surfaces/stated@1",
+                      .vehicle = "vehicles/default-then@1"},
+                     request);
+  EXPECT_EQ(request.gear_set(), "gearSets/default-then");
+  EXPECT_EQ(request.surface(), "surfaces/stated");
+  EXPECT_EQ(request.vehicle(), "vehicles/default-then");
 }
 
 TEST(Inputs, DefaultsAreThoseOfTheContract) {

@@ -1,30 +1,32 @@
-// Tests of old files, damaged files, backup and restore.
+// Tests of files of other versions, damaged files, backup and restore.
 #include "server/storage/maintenance.h"
 
 #include <SQLiteCpp/Statement.h>
 #include <gmock/gmock.h>
+#include <google/protobuf/descriptor.pb.h>
+#include <google/protobuf/text_format.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <filesystem>
 #include <fstream>
-#include <map>
+#include <functional>
+#include <iterator>
 #include <thread>
 
 #include "server/application/stored_inputs.h"
-#include "server/storage/resource_lookup.h"
-#include "server/storage/schema.h"
 #include "server/storage/seeds.h"
+#include "server/storage/token_table.h"
+#include "server/storage/wire_layout.h"
 #include "tests/service/support.h"
-#include "tests/support/paths.h"
 
 namespace tribodyn::server {
 namespace {
 
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::SizeIs;
 
 class MaintenanceTest : public testing::Test {
  protected:
@@ -63,104 +65,110 @@ class MaintenanceTest : public testing::Test {
   TemporaryFolder folder_;
 };
 
-/// Returns revision and body of all resources by name, from a database of any schema.
-std::map<std::string, std::pair<int, std::string>> stored_resources(const std::string& file,
-                                                                    int schema) {
-  SQLite::Database raw(file, SQLite::OPEN_READONLY);
-  SQLite::Statement query(
-      raw, schema == 1 ? "SELECT name, 1, body FROM resources"
-                       : "SELECT r.name, v.revision, v.body FROM resources r JOIN revisions v "
-                         "ON v.id = r.present");
-  std::map<std::string, std::pair<int, std::string>> out;
-  while (query.executeStep()) {
-    out[query.getColumn(0).getString()] = {query.getColumn(1).getInt(),
-                                           query.getColumn(2).getString()};
-  }
-  return out;
-}
-
-/// A stored database of each older schema.
-class OldSchema : public testing::TestWithParam<int> {};
-
-TEST_P(OldSchema, IsMigratedAndLosesNothing) {
-  const TemporaryFolder folder;
-  const std::string file = folder.file("old.db");
-  std::filesystem::copy_file(
-      test_data_file("schemas/schema_" + std::to_string(GetParam()) + ".sqlite"), file);
-  std::filesystem::permissions(file, std::filesystem::perms::owner_all);
-  EXPECT_THAT(check_database(file), IsEmpty());
-  const auto before = stored_resources(file, GetParam());
-  Store store(file);
-  EXPECT_THAT(check_database(file), IsEmpty());
-  ASSERT_EQ(store.migration_backup(), file + ".schema-" + std::to_string(GetParam()));
-  EXPECT_EQ(stored_resources(*store.migration_backup(), GetParam()), before);
-  EXPECT_THAT(check_database(*store.migration_backup()), IsEmpty());
-  for (const char* seed : {"lubricants/1", "gearSets/A", "surfaces/run-in"}) {
-    EXPECT_EQ(before.count(seed), 1U) << "as seeds were named";
-  }
-  for (const auto& [name, resource] : before) {
-    const auto stored = store.resource(name);
-    ASSERT_TRUE(stored) << name;
-    EXPECT_EQ(stored->revision, resource.first) << name;
-    EXPECT_EQ(stored->body, resource.second) << name;
-  }
-  EXPECT_EQ(store.simulations({.limit = 100, .byte_limit = 1 << 30}).rows.size(), 7U);
-  for (std::int64_t id = 1; id <= 7; ++id) {
-    EXPECT_EQ(store.numbered_simulation("default", id)->id, id);
-    EXPECT_EQ(name_of(*store.simulation(id)), "simulations/" + std::to_string(id));
-  }
-  EXPECT_TRUE(store.has_project("default"));
-  EXPECT_FALSE(store.has_project("acme"));
-  EXPECT_EQ(store.simulation(1)->revisions.lubricant, "lubricants/2@1");
-  EXPECT_EQ(store.simulation(1)->revisions.gear_set, "gearSets/B@1");
-  EXPECT_EQ(store.simulation(2)->revisions.gear_set, "gearSets/A@1")
-      << "what the request left out meant the default";
-  v1::Simulation request;
-  ASSERT_TRUE(request.ParseFromString(store.simulation(2)->request));
-  ASSERT_EQ(request.gear_set(), "");
-  set_accepted_names(store.simulation(2)->revisions, request);
-  EXPECT_EQ(request.gear_set(), "gearSets/A") << "and is computed with that";
-  v1::SimulationResult result;
-  ASSERT_TRUE(result.ParseFromString(*store.result(1)));
-  EXPECT_EQ(result.input_hash(), store.simulation(1)->input_hash);
-  EXPECT_EQ(store.history_shape(2).rows, 8);
-  EXPECT_GT(result.assumptions_size(), 40) << "kept apart since schema 3";
-  for (std::int64_t id = 1; id <= 7; ++id) {
-    EXPECT_EQ(store.next_event(id, 0)->state, StoredState::kQueued);
-    EXPECT_EQ(store.next_event(id, store.simulation(id)->sequence - 1)->state,
-              store.simulation(id)->state);
-  }
-  EXPECT_EQ(
-      store.event_range("default").latest,
-      static_cast<std::int64_t>(store.events({.simulations = {1, 2, 3, 4, 5, 6, 7}}).events.size()))
-      << "events have numbers";
-  EXPECT_THAT(store.requeue_unfinished(9), SizeIs(2));
-  if (GetParam() >= 11) {  // with a campaign that has succeeded
-    const auto campaign = store.numbered_campaign("default", 1);
-    ASSERT_TRUE(campaign);
-    EXPECT_TRUE(store.relabel_campaign(*campaign, campaign->request, {{"project", "axle"}}));
-  }
-  EXPECT_THAT(check_database(file, hash_stored_inputs), IsEmpty());
-  SQLite::Database raw(file, SQLite::OPEN_READWRITE);
-  EXPECT_EQ(raw.execAndGet("PRAGMA user_version").getInt(), kSchemaVersion);
-  raw.exec("UPDATE results SET body = substr(body, 2)");
-  raw.exec("UPDATE history_blocks SET data = substr(data, 2)");
-  for (const char* damaged : {"result 1: its content", "result 2: its history"}) {
-    EXPECT_THAT(check_database(file), Contains(HasSubstr(damaged)));
+TEST_F(MaintenanceTest, AMigrationLosesNothingAndKeepsABackup) {
+  make();
+  const std::string backup = path() + ".schema-1";
+  EXPECT_THROW(TokenTable(path(), two_schemas()), StoreError) << "a server may still use schema 1";
+  EXPECT_THAT(check_database(path(), nullptr, two_schemas()), IsEmpty());
+  EXPECT_EQ(Store(path(), two_schemas()).migration_backup(), backup);
+  EXPECT_EQ(Store(path(), two_schemas()).migration_backup(), std::nullopt) << "migrated already";
+  EXPECT_THAT(check_database(path(), nullptr, two_schemas()), IsEmpty());
+  EXPECT_THAT(check_database(backup), IsEmpty());
+  EXPECT_NO_THROW(TokenTable(path(), two_schemas()));
+  EXPECT_THROW(Store{path()}, StoreError) << "of a newer version";
+  SQLite::Database raw(path(), SQLite::OPEN_READWRITE);
+  EXPECT_EQ(raw.execAndGet("PRAGMA user_version").getInt(), 2);
+  EXPECT_GT(raw.execAndGet("SELECT count(*) FROM body_lengths").getInt(), 0);
+  raw.exec("ATTACH '" + backup + "' AS backup");
+  SQLite::Statement tables(
+      raw, "SELECT name FROM backup.sqlite_master WHERE type = 'table' AND name <> 'format'");
+  while (tables.executeStep()) {
+    const std::string table = tables.getColumn(0).getString();
+    EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM (SELECT * FROM backup." + table +
+                             " EXCEPT SELECT * FROM main." + table + ")")
+                  .getInt(),
+              0)
+        << table;
   }
 }
 
 TEST_F(MaintenanceTest, AnEarlierBackupBeforeAMigrationStays) {
-  const std::string old = test_data_file("schemas/schema_4.sqlite"), file = folder_.file("old.db");
-  for (const char* suffix : {"", ".schema-4"}) {
-    std::filesystem::copy_file(old, file + suffix);
-    std::filesystem::permissions(file + suffix, std::filesystem::perms::owner_all);
-  }
-  EXPECT_EQ(Store(file).migration_backup(), file + ".schema-4.2");
-  EXPECT_EQ(Store(file).migration_backup(), std::nullopt) << "migrated already";
+  make();
+  std::filesystem::copy_file(path(), path() + ".schema-1");
+  EXPECT_EQ(Store(path(), two_schemas()).migration_backup(), path() + ".schema-1.2");
 }
 
-INSTANTIATE_TEST_SUITE_P(Schemas, OldSchema, testing::Range(1, kSchemaVersion));
+TEST_F(MaintenanceTest, AnotherVersionsDatabaseIsRefusedWithTheCureAndLeftAsItIs) {
+  make();
+  const std::string file = folder_.file("refused"), log = file + "-wal";
+  const auto bytes_of_both = [&] {
+    std::string out;
+    for (const std::string& each : {file, log}) {
+      std::ifstream in(each, std::ios::binary);
+      out.append(std::istreambuf_iterator<char>(in), {});
+    }
+    return out;
+  };
+  for (const char* sql :
+       {"UPDATE format SET fingerprint = printf('%064d', 0)", "DELETE FROM format",
+        "DROP TABLE format", "DROP TABLE format; PRAGMA user_version = 14",
+        "PRAGMA user_version = 0", "PRAGMA user_version = -1", "PRAGMA user_version = 2",
+        "PRAGMA user_version = 99"}) {
+    {  // with a log, as a killed server leaves it
+      std::filesystem::copy_file(path(), folder_.file("changed"),
+                                 std::filesystem::copy_options::overwrite_existing);
+      SQLite::Database raw(folder_.file("changed"), SQLite::OPEN_READWRITE);
+      raw.exec(sql);
+      for (const char* suffix : {"", "-wal"}) {
+        std::filesystem::copy_file(folder_.file("changed") + suffix, file + suffix,
+                                   std::filesystem::copy_options::overwrite_existing);
+      }
+    }
+    const std::string before = bytes_of_both();
+    const std::function<void()> uses[] = {
+        [&] { Store store(file); }, [&] { TokenTable tokens(file); }, [&] { check_database(file); },
+        [&] { backup_database(file, folder_.file("copy")); },
+        [&] { restore_database(file, folder_.file("other")); }};
+    for (const auto& use : uses) {
+      try {
+        use();
+        ADD_FAILURE() << sql;
+      } catch (const StoreError& error) {
+        EXPECT_EQ(error.kind(), StoreError::Kind::kOtherVersion) << sql;
+        EXPECT_THAT(error.what(), AllOf(HasSubstr(file), HasSubstr("lubricants export --all"),
+                                        HasSubstr("--database")));
+      }
+      EXPECT_EQ(bytes_of_both(), before) << sql;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder_.file("other")));
+  }
+}
+
+TEST(Layout, HasEveryNumberNameAndTypeInOneOrder) {
+  google::protobuf::FileDescriptorProto file;
+  ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(R"(
+    name: "a.proto" syntax: "proto3"
+    message_type {
+      name: "M"
+      field { name: "inner" number: 4 type: TYPE_MESSAGE type_name: ".N" oneof_index: 0 }
+      field { name: "kind" number: 2 type: TYPE_ENUM type_name: ".K" }
+      field { name: "x" number: 1 type: TYPE_DOUBLE label: LABEL_REPEATED }
+      oneof_decl { name: "one" }
+    }
+    message_type {
+      name: "N"
+      field { name: "n" number: 1 type: TYPE_MESSAGE type_name: ".N" }
+      field { name: "y" number: 2 type: TYPE_INT32 proto3_optional: true oneof_index: 0 }
+      oneof_decl { name: "_y" }
+    }
+    enum_type { name: "K" value { name: "NONE" number: 0 } value { name: "SOME" number: 3 } })",
+                                                            &file));
+  google::protobuf::DescriptorPool pool;
+  EXPECT_EQ(wire_layout({pool.BuildFile(file)->message_type(0)}),
+            "K\n0 NONE\n3 SOME\n"
+            "M\n1 x double repeated packed\n2 kind enum K\n4 inner message N with presence in one\n"
+            "N\n1 n message N with presence\n2 y int32 with presence\n");
+}
 
 TEST_F(MaintenanceTest, ListsFindResourcesThatWereStoredBeforeAFieldWasAdded) {
   make();
@@ -302,10 +310,6 @@ TEST(Inputs, OfAStoredSimulationKeepTheirHash) {
 
 TEST_F(MaintenanceTest, ServerCheckAndRestoreRefuseTheSameDatabases) {
   const std::pair<const char*, const char*> cases[] = {
-      {"PRAGMA user_version = 0", "its schema is numbered 0"},
-      {"PRAGMA user_version = -1", "its schema is numbered -1"},
-      {"PRAGMA user_version = 2", "its table history is missing"},
-      {"PRAGMA user_version = 99", "newer tribodynd"},
       {"PRAGMA application_id = 7", "another program"},
       {"CREATE TABLE notes (text TEXT)", "its table notes is not of this program"},
       {"CREATE TRIGGER planted AFTER INSERT ON simulations BEGIN DELETE FROM results; END",

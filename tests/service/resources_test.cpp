@@ -449,13 +449,6 @@ TEST_F(ResourcesTest, ANumberThatTheModelDoesNotUseIsStoredAndMayBeUnset) {
                      HasSubstr("\"flash_point_celsius\" is not a parameter")));
 }
 
-TEST(StoredNumbers, OfSchema1AreZeroWhereTheModelUsesThem) {
-  v1::Lubricant oil;
-  set_missing_numbers(oil);
-  EXPECT_TRUE(oil.has_relaxation_time_seconds());
-  EXPECT_FALSE(oil.has_flash_point_celsius());
-}
-
 class ListTest : public ResourcesTest {
  protected:
   void SetUp() override {

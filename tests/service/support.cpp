@@ -82,6 +82,18 @@ std::string complaints(const google::rpc::Status& refusal) {
   return out;
 }
 
+SchemaSteps two_schemas() {
+  SchemaSteps out = schema_steps();
+  out.push_back(
+      {"CREATE TABLE body_lengths (revision INTEGER PRIMARY KEY REFERENCES revisions (id), "
+       "bytes INTEGER NOT NULL) STRICT",
+       [](Connection& db) {
+         db.exec("INSERT INTO body_lengths SELECT id, length(body) FROM revisions");
+       },
+       std::string(64, '2')});
+  return out;
+}
+
 TemporaryFolder::TemporaryFolder(Kind kind) {
   const std::filesystem::path memory = "/dev/shm";
   const bool in_memory = kind == Kind::kMemory && access(memory.c_str(), W_OK) == 0;

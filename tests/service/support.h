@@ -21,6 +21,9 @@
 
 namespace tribodyn::server {
 
+/// The steps of a program whose present schema is 2, with one more table than schema 1.
+SchemaSteps two_schemas();
+
 /// A temporary folder. The destructor removes it.
 class TemporaryFolder {
  public:
