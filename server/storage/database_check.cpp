@@ -45,9 +45,10 @@ std::string fingerprint_of(Connection& db) try {
 
 /// Makes the connection leave a write-ahead log as it is when it closes: SQLite would write the
 /// changes of a killed server into the database file.
-void keep_log(Connection& db, const std::filesystem::path& path) {
+void keep_log(Connection& db) {
+  const char* log = sqlite3_filename_wal(sqlite3_db_filename(db.getHandle(), "main"));
   std::error_code missing;
-  if (std::filesystem::file_size(path.string() + "-wal", missing) == 0 || missing) return;
+  if (std::filesystem::file_size(log, missing) == 0 || missing) return;
   sqlite3_db_config(db.getHandle(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
 }
 
@@ -311,7 +312,7 @@ void check_identity(Connection& db, const std::filesystem::path& path, const Sch
       fingerprint_of(db) == steps[static_cast<std::size_t>(version) - 1].fingerprint) {
     return;
   }
-  keep_log(db, path);
+  keep_log(db);
   throw StoreError(
       StoreError::Kind::kOtherVersion,
       name +

@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
@@ -142,7 +143,7 @@ class MaintenanceFault : public testing::Test {
       const std::string database = place_database(place);
       was_met =
           run_in_child([&] {
-            int calls = 0;
+            std::atomic<int> calls = 0;
             const FileCallHook hook([&](const std::string&) { return ++calls == n ? meet() : 0; });
             action(database);
             if (calls >= n) _exit(2);  // e.g. SQLite ignores the error of syncing a folder
