@@ -4,15 +4,21 @@
 #include <tribodyn/client/connection.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iostream>
 #include <memory>
+#include <regex>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "client/cpp/commands/arguments.h"
 #include "client/cpp/commands/help_topics.h"
 #include "client/cpp/resources/kind.h"
+#include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
 #include "tests/service/server_process.h"
 
@@ -41,12 +47,12 @@ class Library : public testing::Test {
     std::filesystem::remove_all(folder_);
   }
 
+  static inline std::string address_;
   Connection connection{address_};
 
  private:
   static inline std::filesystem::path folder_;
   static inline std::unique_ptr<server::ServerProcess> process_;
-  static inline std::string address_;
 };
 
 v1::Lubricant data_sheet() {
@@ -426,6 +432,110 @@ TEST_F(Library, ACampaignIsPausedResumedAndCancelled) {
   EXPECT_EQ(connection.cancel_campaign(made.name()).state(), v1::Campaign::CANCELLED);
   EXPECT_TRUE(has_ended(connection.follow_campaign(made.name()).state()));
   connection.delete_campaign(made.name());
+}
+
+/// The bounds in "... allowed: 0.1 to 400 km/h"; empty if there are none.
+std::vector<double> range_in(const std::string& text) {
+  static const std::regex kRange("[Aa]llowed: (?:0, or )?([-+.0-9e]+) to ([-+.0-9e]+)");
+  std::smatch found;
+  if (!std::regex_search(text, found, kRange)) return {};
+  return {std::stod(found[1]), std::stod(found[2].str())};
+}
+
+/// Returns the range that the server states when a number of the flag is above `highest`; empty if
+/// the server does not refuse it.
+std::vector<double> refused_range(const std::string& address, const std::string& path,
+                                  std::vector<std::string> words, const std::string& flag,
+                                  double highest) {
+  const auto given = std::find(words.begin(), words.end(), flag);
+  if (given != words.end()) words.erase(given, given + 2);
+  words.insert(words.end(), {flag, shortest(highest + 2)});
+  CommonOptions options;
+  options.server = address;
+  FlagList common_flags;
+  add_common_flags(common_flags, options);
+  std::vector<Command> commands = all_commands();
+  std::erase_if(commands, [&](const Command& each) { return each.path != path; });
+  const Parsed parsed = parse_arguments(words, commands, common_flags);
+  if (!parsed.complaints.empty()) return {};
+  options.typed_flags = parsed.typed_flags;
+  std::string error;
+  try {
+    parsed.command->run(options);
+  } catch (const ServiceError& refusal) {
+    error = with_flag_names(refusal, parsed.typed_flags).what();
+  } catch (const Failure& failure) {
+    error = failure.what();
+  }
+  const std::size_t line = error.find("\n  " + flag + " ");
+  if (line == std::string::npos) return {};
+  return range_in(error.substr(line + 1, error.find('\n', line + 1) - line - 1));
+}
+
+// One number above the range of every flag that states one: the server states the same range.
+TEST_F(Library, RangesInTheHelpAreThoseOfTheServer) {
+  const std::string campaign = connection.create_campaign(campaign_of_times(3)).name();
+  connection.follow_campaign(campaign);
+  const std::string points =
+      " paper-fluid-1 paper-fluid-2 --speed-kilometres-per-hour 50"
+      " --sump-temperature-celsius 40 --condition-weights 1";
+  const std::string screened = "screen --lubricants paper-fluid-1,paper-fluid-2";
+  const std::vector<std::string> lines = {
+      "point -l paper-fluid-1 --speed-kilometres-per-hour 50",
+      "point -l paper-fluid-1 --pinion-torque-newton-metres 1 --pinion-speed-radians-per-second 1",
+      "history -l paper-fluid-1 --speed-kilometres-per-hour 50",
+      "history -l paper-fluid-1 --pinion-torque-newton-metres 1"
+      " --pinion-speed-radians-per-second 1",
+      "spectrum -l paper-fluid-1 --speed-kilometres-per-hour 50",
+      "spectrum -l paper-fluid-1 --pinion-torque-newton-metres 1"
+      " --pinion-speed-radians-per-second 1",
+      "curve -l paper-fluid-1",
+      "report paper-fluid-1 --html /dev/null",
+      "compare" + points,
+      "explain" + points,
+      screened + " --speed-kilometres-per-hour 50 --uncertainty pressure-viscosity=5%",
+      screened + " --rig traction",
+      "sensitivities paper-fluid-1 --speed-kilometres-per-hour 50",
+      "sensitivities paper-fluid-1 --pinion-torque-newton-metres 1"
+      " --pinion-speed-radians-per-second 1",
+      "contact",
+      "viscosity paper-fluid-1",
+      "traction paper-fluid-1",
+      "film paper-fluid-1",
+      "stribeck paper-fluid-1",
+      "cycle paper-fluid-1",
+      "campaigns rank " + campaign,
+      "campaigns pareto " + campaign + " --least mesh_loss_power_watts",
+      "campaigns effects " + campaign,
+      "campaigns resume " + campaign,
+  };
+  std::set<std::string> own;  // flags with a range that the server does not state
+  int compared = 0;
+  for (const Command& command : all_commands()) {
+    for (const Flag& flag : command.flags.flags()) {
+      const std::vector<double> stated = range_in(flag.description);
+      if (stated.empty()) continue;
+      std::vector<double> range;
+      for (const std::string& line : lines) {
+        if (!range.empty() || !(line + " ").starts_with(command.path + " ")) continue;
+        range =
+            refused_range(address_, command.path, split(line, ' '), flag.first_name(), stated[1]);
+      }
+      if (range.empty()) {
+        own.insert(flag.first_name());
+        continue;
+      }
+      EXPECT_EQ(range, stated) << command.path << " " << flag.first_name();
+      ++compared;
+    }
+  }
+  std::cout << compared << " ranges compared\n";
+  // What the client checks or scales before it asks, and the budget of a campaign that exists.
+  EXPECT_EQ(own, (std::set<std::string>{"--budget-points", "--budget-processor-seconds",
+                                        "--condition-weights", "--confidence", "--count",
+                                        "--levels", "--limit", "--map-tolerance", "--seed",
+                                        "--sump-weights", "--top"}));
+  EXPECT_GE(compared, 190);
 }
 
 }  // namespace
