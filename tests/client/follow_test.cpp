@@ -155,7 +155,6 @@ TEST(Follow, StopsWaitingForAFrozenServer) {
     FAIL() << "waited for a frozen server";
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.exit_code(), kExitCannotConnect);
-    EXPECT_NE(std::string(failure.what()).find("no answer in time"), std::string::npos);
     EXPECT_NE(std::string(failure.what()).find("tribodyn jobs watch a"), std::string::npos);
   }
 }

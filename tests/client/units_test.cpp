@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
-#include <tuple>
+#include <utility>
 
 namespace tribodyn::client {
 namespace {
@@ -57,28 +57,24 @@ TEST(Units, TemperaturesConvertByTheirZeros) {
 }
 
 TEST(Units, RejectUnitsOfOtherDimensions) {
-  std::string wrong;
-  for (const auto& [text, unit, reason] : {
-           std::tuple("20", "1/Pa", "needs its unit, e.g. 20/GPa"),
-           std::tuple("20 MPa", "1/Pa", "must be in 1/Pa or a multiple of it"),
-           std::tuple("7 cSt", "mPa s", "must be in mPa s or a multiple of it"),
-           std::tuple("20 C", "K", "must be in K or a multiple of it"),
-           std::tuple("fast", "K", "is not a number in K"),
-           std::tuple("", "K", "is not a number in K"),
-           std::tuple("1e999K", "K", "is not a number in K"),
-           std::tuple("3 (", "K", "must be in K or a multiple of it"),
-           std::tuple("3 ()()", "K", "must be in K or a multiple of it"),
-           std::tuple("3 m99999999999", "m", "must be in m or a multiple of it"),
-           std::tuple("3 km2147483647", "m", "must be in m or a multiple of it"),
-           std::tuple("3 m-2147483648", "m", "must be in m or a multiple of it"),
-           std::tuple("1e308 h", "s", "is too large"),
-           std::tuple("73,3", "K", "has a decimal comma; write a decimal point: 73.3"),
-           std::tuple("1,5 K", "K", "has a decimal comma; write a decimal point: 1.5 K"),
-           std::tuple("1,2,3", "K", "must be in K or a multiple of it"),
-       }) {
+  const auto complaint = [](const char* text, const char* unit) {
+    std::string wrong;
     EXPECT_FALSE(read_quantity(text, unit, "", false, wrong)) << text;
-    EXPECT_EQ(wrong, reason) << text;
+    EXPECT_NE(wrong, "") << text;
+    return wrong;
+  };
+  for (const auto& [text, unit] :
+       {std::pair("20 MPa", "1/Pa"), std::pair("7 cSt", "mPa s"), std::pair("20 C", "K"),
+        std::pair("fast", "K"), std::pair("", "K"), std::pair("1e999K", "K"), std::pair("3 (", "K"),
+        std::pair("3 ()()", "K"), std::pair("3 m99999999999", "m"),
+        std::pair("3 km2147483647", "m"), std::pair("3 m-2147483648", "m"),
+        std::pair("1e308 h", "s"), std::pair("1,2,3", "K")}) {
+    complaint(text, unit);
   }
+  // How to write it is a part of the complaint.
+  EXPECT_TRUE(complaint("20", "1/Pa").ends_with(" 20/GPa"));
+  EXPECT_TRUE(complaint("73,3", "K").ends_with(" 73.3"));
+  EXPECT_TRUE(complaint("1,5 K", "K").ends_with(" 1.5 K"));
 }
 
 TEST(Units, ASlopeInPercentIsAnAngle) {
@@ -89,17 +85,18 @@ TEST(Units, ASlopeInPercentIsAnAngle) {
   EXPECT_NEAR(read("1000rpm", "rad/s"), 104.7198, 1e-4);
 }
 
-TEST(Units, ASlipOfTheUnitIsExplained) {
-  EXPECT_EQ(unit_slip("0.895", "kg/m3", "kg/m3", 500, 2000),
-            "0.895 looks like g/cm3: write 0.895g/cm3 or 895");
-  EXPECT_EQ(unit_slip("103e-6", "mm2/s", "mm2/s", 1, 1e5),
-            "103e-6 looks like m2/s: write 103e-6m2/s or 103");
-  EXPECT_EQ(unit_slip("103e-6 mm2/s", "mm2/s", "mm2/s", 1, 1e5),
-            "103e-6 looks like m2/s: write 103e-6m2/s or 103");
-  EXPECT_EQ(unit_slip("2e-8", "1/Pa", "1/GPa", 1e-10, 1e-6),
-            "2e-8 looks like 1/Pa: write 2e-8/Pa or 20");
-  EXPECT_EQ(unit_slip("363", "C", "C", -70, 200), "363 looks like K: write 363K or 89.85");
-  EXPECT_EQ(unit_slip("1.5", "kg", "kg", 100, 1e5), "1.5 looks like t: write 1.5t or 1500");
+TEST(Units, ASlipOfTheUnitIsShownInBothUnits) {
+  const auto expect = [](const std::string& slip, const std::string& typed,
+                         const std::string& own) {
+    EXPECT_NE(slip.find(" " + typed + " "), std::string::npos) << slip;
+    EXPECT_TRUE(slip.ends_with(" " + own)) << slip;
+  };
+  expect(unit_slip("0.895", "kg/m3", "kg/m3", 500, 2000), "0.895g/cm3", "895");
+  expect(unit_slip("103e-6", "mm2/s", "mm2/s", 1, 1e5), "103e-6m2/s", "103");
+  expect(unit_slip("103e-6 mm2/s", "mm2/s", "mm2/s", 1, 1e5), "103e-6m2/s", "103");
+  expect(unit_slip("2e-8", "1/Pa", "1/GPa", 1e-10, 1e-6), "2e-8/Pa", "20");
+  expect(unit_slip("363", "C", "C", -70, 200), "363K", "89.85");
+  expect(unit_slip("1.5", "kg", "kg", 100, 1e5), "1.5t", "1500");
   EXPECT_EQ(unit_slip("8.7", "kg/m3", "kg/m3", 500, 2000), "")
       << "8700 kg/m3 is outside the range too";
   EXPECT_EQ(unit_slip("3", "m", "m", 1e-9, 1e-2), "") << "um and mm would both fit";
