@@ -9,22 +9,15 @@ here=$PWD
 cd "$folder" || exit 1
 
 err_is_empty() { [ ! -s "$folder/err" ] || fail "tribodyn $asked: standard error is not empty"; }
-out_lacks() { ! grep -qE -- "$1" "$folder/out" || fail "tribodyn $asked: '$1' on standard output"; }
 
 echo "--- from three numbers to a curve"
 expect 0 lubricants create my-oil --kv40 73.3 --kv100 8.86 --density15 870
-for part in 'viscosity index +92\.4 ' 'SAE J306 grade +80' 'Estimated, not measured' \
-  '14 parameters: 3 fitted, .* assumed' 'tribodyn lubricants get my-oil' \
-  'T_0' 'tribodyn curve --lubricant my-oil'; do
-  out_has "$part"
-done
-out_lacks 'thermal conductivity .* assumed'
+out_has 'viscosity index +92\.4 ' 'SAE J306 grade +80' '14 parameters: 3 fitted' \
+  'tribodyn lubricants get my-oil' 'tribodyn curve --lubricant my-oil'
 expect 0 lubricants get my-oil
-out_has 'pressure viscosity coefficient +20\.5[0-9]* +1/GPa +5\.1 +assumed'
-out_has 'thermal conductivity .* assumed'
+out_has 'pressure viscosity coefficient +20\.5[0-9]* +1/GPa +5\.1 +assumed' 'thermal conductivity .* assumed'
 err_is_empty
 expect 0 curve --lubricant my-oil --first-speed 40 --last-speed 60 --speed-step 10
-out_has 'Parameters of the lubricant that are assumed, not measured'
 out_has 'pressure viscosity coefficient 20\.5'
 err_is_empty
 
@@ -37,19 +30,13 @@ temperature_celsius,kinematic_viscosity_square_millimetres_per_second,density_ki
 100,8.86,
 END
 expect 0 lubricants import table-oil.csv --base-oil-class group-iii
-out_has 'imported lubricants/table-oil'
-out_has 'root mean square +[0-9.]+ %'
-out_has 'SAE J306 grade +80'
-expect 0 curve --lubricant table-oil --first-speed 40 --last-speed 50 --speed-step 10 \
-  --model quasi-static
+out_has 'lubricants/table-oil' ' [0-9.]+ %' 'SAE J306 grade +80'
 expect 0 lubricants create table-2 --viscosity-table table-oil.csv
 expect 1 lubricants import table-oil.csv
-err_has 'ALREADY_EXISTS|already exists'
+err_has 'lubricants/table-oil'
 sed 's/205/thick/; s/8.86/x/' table-oil.csv >broken.csv
 expect 1 lubricants import broken.csv
-err_has 'broken.csv row 3 column kinematic.*thick'
-err_has 'row 5 column kinematic'
-expect 1 lubricants get broken
+err_has 'broken.csv row 3 column kinematic.*thick' 'row 5 column kinematic'
 
 echo "--- units in, units out"
 expect 0 lubricants create units --kv40 73.3cSt --kv100 '8.86 mm^2/s' --density15 '0.87 g/cm3' \
@@ -58,45 +45,28 @@ expect 0 lubricants create units --kv40 73.3cSt --kv100 '8.86 mm^2/s' --density1
   --provenance 'pressure-viscosity=measured:Laboratory X' --uncertainty pressure-viscosity=0.5/GPa
 out_has ' 1 measured'
 expect 0 lubricants get units
-out_has 'pressure viscosity coefficient +20 +1/GPa +0.5 +measured'
-out_has 'relaxation time +0.45 +us +user'
-out_has 'SAE J306 grade +75W-80'
+out_has 'pressure viscosity coefficient +20 +1/GPa +0.5 +measured' 'relaxation time +0.45 +us +user' \
+  'SAE J306 grade +75W-80'
 expect 0 lubricants get units --output json
-out_has '"pressure_viscosity_coefficient_per_pascal": 2e-0?8'
-out_has '"relaxation_time_seconds": 4.5e-0?7'
+out_is_json
+out_has '"pressure_viscosity_coefficient_per_pascal": 2e-0?8' '"relaxation_time_seconds": 4.5e-0?7'
 
 echo "--- errors: all at once, with the nearest name"
 expect 2 lubricants create x --kv40 thick --kv100 8,86 --pressure-viscosity 20s --densty15 8
-err_has "'thick' is not a number in mm2/s"
-err_has 'write a decimal point: 8.86'
-err_has "'20s' must be in 1/Pa"
-err_has 'is --density15 meant'
-expect 2 lubricants create x --density 868
-err_has 'did you mean --density15'
-! grep -q 'no properties given' "$folder/err" || fail "a flag that cannot be read counts as missing"
+err_has "'thick'" '8\.86$' "'20s'" '--density15'
 expect 1 lubricants create x --kv40 0.1 --density15 0.87 --pressure-viscosity 1e6/GPa
-for part in '--kv40 = 0.1 mm2/s; allowed: 1 to' \
-  '--density15 = 0.87 kg/m3; allowed: 500 to .*0.87 looks like g/cm3: write 0.87g/cm3 or 870' \
-  '--pressure-viscosity 1e6/GPa = .* allowed'; do
-  err_has "$part"
-done
+err_has '--kv40 = 0.1 mm2/s.* 1 to' '--density15 = 0.87 kg/m3.* 500 to .* 0.87g/cm3 or 870' \
+  '--pressure-viscosity 1e6/GPa = '
 expect 1 lubricants get my-oill
-err_has 'my-oil"'
-expect 1 lubricants list --filter 'condicion = USED'
-err_has 'condition'
-expect 2 lubricants create
-expect 2 lubricants update my-oil
-expect 2 lubricants frobnicate
+err_has '"lubricants/my-oil"|"my-oil"'
 expect 2 gear-sets import nothing.json
-err_has 'No such file'
+err_has 'nothing.json'
 
 echo "--- revisions"
 expect 0 lubricants update my-oil --pressure-viscosity 18/GPa --label project=axle
-out_has 'updated lubricants/my-oil, revision 2'
-out_has 'pressure viscosity coefficient +18 .*user'
+out_has 'lubricants/my-oil.* 2' 'pressure viscosity coefficient +18 .*user'
 expect 0 lubricants revisions my-oil
-out_has '^my-oil@2'
-out_has '^my-oil@1'
+out_has '^my-oil@2' '^my-oil@1'
 expect 0 lubricants get my-oil@1
 out_has 'pressure viscosity coefficient +20\.5'
 expect 0 diff my-oil@1 my-oil
@@ -114,7 +84,7 @@ expect 1 lubricants update my-oil --title x --etag stale
 err_has 'ABORTED|etag'
 expect 0 lubricants list --label project=axle --output csv
 out_lines 2
-expect 0 lubricants list --filter 'labels.project:*' --order-by 'name desc' --limit 1
+out_has 'pressure_viscosity_coefficient_per_pascal'
 expect 0 lubricants list --order-by name --limit 2 --output csv
 out_lines 3
 token=$(grep -oE -- '--page-token [0-9a-f]+' "$folder/err" | cut -d' ' -f2)
@@ -123,63 +93,54 @@ cp "$folder/out" rest.csv
 expect 0 lubricants list --order-by name --output csv
 tail -n +4 "$folder/out" | cmp -s - <(tail -n +2 rest.csv) || fail "a page token skips or repeats"
 expect 1 lubricants list --page-token nonsense
-err_has '--page-token nonsense: not a token'
-expect 0 lubricants list --filter 'kv100 > 8.8 AND vi > 90 AND name = my-oil' --order-by kv40
-out_has '^my-oil '
+err_has '--page-token nonsense'
+expect 0 lubricants list --filter 'kv100 > 8.8 AND vi > 90 AND name = my-oil AND labels.project:*' --order-by 'kv40 desc'
+out_has '^my-oil .* 92\.4 '
 expect 1 lubricants list --filter 'kv10 > 8.8'
-err_has 'kv100'
-err_has 'See tribodyn help filters'
+err_has 'kv100' 'tribodyn help filters'
 expect 0 lubricants delete my-oil
-expect 0 lubricants list
-out_lacks '^my-oil '
 expect 0 lubricants list --show-deleted
 out_has '^my-oil \(deleted\)'
 expect 1 point --lubricant my-oil --speed 50
 expect 0 lubricants undelete my-oil
-expect 0 lubricants list
-out_has '^my-oil '
 expect 0 lubricants create secret --like my-oil
 expect 0 point --lubricant secret --speed 50 --model quasi-static
 expect 1 lubricants purge secret
-err_has '1 simulation used lubricants/secret'
+err_has '\b1 .*lubricants/secret'
 expect 0 lubricants purge secret --with-jobs --validate-only
-out_has '^would erase lubricants/secret: 1 revision, 1 job, '
+out_has 'lubricants/secret: 1 .* 1 '
 expect 0 lubricants purge secret --with-jobs
-out_has '^erased lubricants/secret: 1 revision, 1 job, '
-expect 1 lubricants get secret
+out_has 'lubricants/secret: 1 .* 1 '
 expect 1 lubricants purge secret
 expect 0 lubricants purge secret --allow-missing
 
 echo "--- files there and back"
 for kind in lubricants gear-sets surfaces vehicles; do
-  expect 0 "$kind" list
   # What came with the server states its provenance with its first import; from then on nothing
   # changes.
   expect 0 "$kind" export --all --file first.json
   expect 0 "$kind" import first.json --replace
   expect 0 "$kind" export --all --file "$kind.json"
-  expect 0 validate "$kind.json"
   expect 0 "$kind" import "$kind.json" --replace
   expect 0 "$kind" export --all --file again.json
   cmp -s "$kind.json" again.json || fail "$kind: export, import, export is not identical"
 done
+expect 0 validate {lubricants,gear-sets,surfaces,vehicles}.json
 expect 0 lubricants export units --file units.json
 sed 's,lubricants/units,lubricants/units-2,' units.json >units-2.json
 expect 0 lubricants import units-2.json
-expect 0 diff units units-2
-out_has 'do not differ'
+expect 0 diff units units-2 --exit-code
 printf '{"lubricants": [{"name": "lubricants/half", "measurements": {
   "kinematic_viscosity_40_celsius_square_millimetres_per_second": 73}},
   {"name": "lubricants/other", "relaxation_time_seconds": -1}]}' >half.json
 expect 1 lubricants import half.json
-err_has 'lubricants\[1\].*' && err_has 'Nothing was written'
+err_has 'lubricants\[1\]'
 expect 1 lubricants get half
 printf '{"name": "lubricants/q", "measurments": {}}' >misspelt.json
 expect 2 validate misspelt.json
-err_has 'is measurements meant'
+err_has 'measurements'
 expect 1 validate half.json units.json
-out_has 'units.json: valid'
-
+out_has 'units.json'
 fluid='"measurements": {"kinematic_viscosity_40_celsius_square_millimetres_per_second": 73,
   "kinematic_viscosity_100_celsius_square_millimetres_per_second": 9,
   "density_15_celsius_kilograms_per_cubic_metre": 870}'
@@ -187,23 +148,17 @@ printf '{"lubricants": [{"name": "lubricants/drained", "derived_from": "lubrican
   {"name": "lubricants/filled", %s}]}' "$fluid" "$fluid" >derived.json
 expect 0 lubricants import derived.json
 expect 0 lubricants get drained
-out_has 'derived from +lubricants/filled'
+out_has '[^/]lubricants/filled'
 printf '{"lubricants": [{"name": "lubricants/twice", %s}, {"name": "lubricants/twice", %s}]}' \
   "$fluid" "$fluid" >twice.json
 expect 2 lubricants import twice.json
-err_has 'lubricants\[0\] and in .*lubricants\[1\]'
-expect 1 lubricants get twice
+err_has 'lubricants\[0\] .*lubricants\[1\]'
 
 echo "--- validation of a simulation"
-expect 0 curve --lubricant paper-fluid-1 --lubricant my-oil --validate-only
-out_has '^valid, not run: lubricants/my-oil  about .* of a processor; inputs [0-9a-f]{64}$'
-expect 1 point --lubricant paper-fluid-1 --speed 4000 --validate-only
-err_has 'allowed: 0.1 to 400 km/h'
-expect 0 jobs list --output csv
-jobs_before=$(cat "$folder/out")
-expect 0 point --lubricant paper-fluid-1 --speed 40 --validate-only
-expect 0 jobs list --output csv
-[ "$(cat "$folder/out")" = "$jobs_before" ] || fail "--validate-only runs something"
+expect 0 curve --lubricant paper-fluid-1 --lubricant my-oil --label checked=yes --validate-only
+out_has 'lubricants/my-oil .*[0-9a-f]{64}$'
+expect 0 jobs list --label checked=yes --output csv
+out_lines 0
 
 echo "--- one fluid per row"
 cat >rows.csv <<'END'
@@ -211,68 +166,45 @@ name;kinematic_viscosity_40_celsius_square_millimetres_per_second;kinematic_visc
 row-used;70;8.6;pao;used;row-fresh;axle;;
 row-fresh;73.3;8.86;pao;fresh;;axle;"An ""oil""; fresh";212
 END
-expect 0 validate rows.csv
-expect 1 lubricants get row-used
 expect 0 lubricants import rows.csv
 expect 0 lubricants get row-used
-out_has 'derived from +lubricants/row-fresh'
+out_has 'lubricants/row-fresh'
 out_lacks 'flash point'
-expect 0 lubricants get row-fresh
-out_has 'flash point +212 C'
 expect 0 lubricants export row-fresh row-used --output csv --file rows-2.csv
 err_is_empty
+grep -q ',212' rows-2.csv || fail "the table lacks the flash point"
 expect 0 lubricants import rows-2.csv --replace
 expect 0 lubricants export row-fresh row-used --output csv --file rows-3.csv
 cmp -s rows-2.csv rows-3.csv || fail "rows: export, import, export is not identical"
-expect 0 lubricants revisions row-used
-! grep -q 'row-used@2' "$folder/out" || fail "an import of what is there makes a revision"
 sed -e 's/;73.3;/;thick;/; s/;used;/;usd;/; s/display_name/display_nme/' rows.csv >rows-bad.csv
 expect 2 lubricants import rows-bad.csv --replace
-err_has "row 2 column condition: 'usd' must be one of"
-err_has "row 3 column kinematic_viscosity_40.*: 'thick' is not a number"
-err_has 'is display_name meant'
+err_has "row 2 column condition: 'usd'" "row 3 column kinematic_viscosity_40.*: 'thick'" 'display_name'
 sed -e 's/;73.3;/;1e9;/; s/;8.6;/;-1;/' rows.csv >rows-bad.csv
 expect 1 lubricants import rows-bad.csv --replace
-err_has 'row 2 column kinematic_viscosity_100_.* = -1 mm2/s'
-err_has 'row 3 column kinematic_viscosity_40_.* = 1000000000 mm2/s'
-err_has 'Nothing was written'
-sed 's/;labels.project;/;labels.pro ject;/' rows.csv >rows-bad.csv
-expect 1 lubricants import rows-bad.csv
-err_has 'row 2 column labels.pro ject: "pro ject"; allowed: letters'
+err_has 'row 2 column kinematic_viscosity_100_.* = -1 mm2/s' 'row 3 column kinematic_viscosity_40_.* = 1000000000 mm2/s'
 expect 1 lubricants import rows.csv
-err_has 'row 2 column name: lubricants/row-used exists already'
-err_has 'Nothing was written. Use --replace to create new revisions'
+err_has 'row 2 column name: lubricants/row-used' '--replace'
 expect 0 lubricants export --all --output csv --file all.csv
 expect 0 lubricants import all.csv --replace
-for fluid in table-oil table-2 row-fresh; do
+for fluid in table-oil row-used; do # an import of what is there makes no revision
   expect 0 lubricants revisions "$fluid" --output csv
   out_lines 2
 done
 printf '{"lubricants": []}' >none.json
 expect 0 lubricants import none.json
-expect 0 validate none.json
 
 echo "--- tables as spreadsheets write them"
 printf 'Name;KV40;kv100;Density15;Base oil class;display_name\n;mm2/s;mm2/s;g/cm3;;\nexcel;73,3;8,86;0,87;Gr. III;\326l\n' >excel.txt
 expect 0 lubricants import excel.txt
-err_has '3 cells have a decimal comma and were read with a decimal point'
-err_has 'read as Latin-1'
-out_has 'excel: .+l'
-out_has 'density at 15 C +870 '
-out_has 'Estimated, not measured'
-printf 'PK\003\004rest' >book.xlsx
-cp book.xlsx book.csv
-for book in book.xlsx book.csv; do
-  expect 2 lubricants import $book
-  err_has "$book is an Excel workbook. Save it as"
-  expect 2 lubricants create book --viscosity-table $book
-  err_has "$book is an Excel workbook. Save it as"
-done
+err_has '^.*3 cells' 'Latin-1'
+out_has 'excel: .+l' 'density at 15 C +870 '
+printf 'PK\003\004rest' >book.csv
+expect 2 lubricants import book.csv
+expect 2 lubricants create book --viscosity-table book.csv
+err_has 'book.csv'
 printf 'name,kv40,kv100,base_oil_class\ntwin,73.3,8.86,pao\nother,0.00007,8,pao\ntwin,73.3,8.86,pao\n' >twins.csv
 expect 2 lubricants import twins.csv
-err_has 'lubricants/twin occurs in twins.csv row 2 and in twins.csv row 4'
-err_has 'row 3 column kv40: .* looks like m2/s: did you mean 70 mm2/s'
-expect 1 lubricants get twin
+err_has 'lubricants/twin .*row 2 .*row 4' 'row 3 column kv40: .* 70 mm2/s'
 
 echo "--- a table that starts from a lubricant, or a surface"
 expect 0 lubricants create based --kv40 103 --kv100 15 --density15 868 --base-oil-class ester \
@@ -280,69 +212,51 @@ expect 0 lubricants create based --kv40 103 --kv100 15 --density15 868 --base-oi
 printf 'name,kv40,pressure_viscosity_coefficient_per_pascal,labels.doe\nvar-1,,1.8e-8,1\nvar-2,110,,2\n' >var.csv
 expect 0 lubricants import var.csv --like based
 expect 0 lubricants get var-1
-out_has 'KV40 +103 '
-out_has 'pressure viscosity coefficient +18 .*user'
+out_has 'KV40 +103 ' 'pressure viscosity coefficient +18 .*user'
 expect 0 lubricants get var-2
-out_has 'KV40 +110 '
-out_has 'base oil +ester'
-out_has 'pressure viscosity coefficient +20 .*measured'
+out_has 'KV40 +110 ' 'base oil +ester' 'pressure viscosity coefficient +20 .*measured'
 expect 0 lubricants import table-oil.csv --id based-table --like based
 expect 0 lubricants get based-table
-out_has 'KV40 +73\.3 '
-out_has 'density at 15 C +87[0-9]'
-out_has 'pressure viscosity coefficient +20 .*measured'
-out_has 'base oil +ester'
+out_has 'KV40 +73\.3 ' 'density at 15 C +87[0-9]' 'pressure viscosity coefficient +20 .*measured' 'base oil +ester'
 printf 'name,composite_rms_height_metres\nvar-a,3e-7\nvar-b,\n' >varsurf.csv
 expect 0 surfaces import varsurf.csv --like run-in
-expect 0 surfaces get var-a
-out_has 'composite rms height +0.3 +um'
-expect 0 surfaces get var-b
-out_has 'composite rms height +0.4 +um .*assumed'
+expect 0 surfaces export var-a var-b --output csv
+out_has '^surfaces/var-a,.*3e-0?7' '^surfaces/var-b,'
 expect 2 lubricants import units.json --like based
-err_has 'like applies only to tables'
+err_has '--like'
 
 echo "--- export to a spreadsheet and import"
 expect 0 lubricants create cold --kv40 103 --kv100 15.1 --density15 868 --brookfield -40=98Pas \
   --kv100-sheared 14.2 --base-oil-class pao --density 100=815 --viscosity 20=283mm2/s \
   --thermal-conductivity 0.14W/mK --provenance 'thermal-conductivity=measured:Laboratory X' \
   --uncertainty thermal-conductivity=0.01W/mK --label 'project=axle, rear'
-for oil in paper-fluid-1 paper-fluid-2 paper-fluid-3 shell-t9 excel cold my-oil; do
-  expect 0 lubricants export "$oil" --output csv --file there.csv
-  err_is_empty
-  sed "2s,^lubricants/$oil,lubricants/back-$oil," there.csv >back.csv
-  expect 0 lubricants import back.csv
-  expect 0 lubricants get "$oil" --output json
-  grep -vE '"(name|etag|revision|create_time|revision_create_time)"' "$folder/out" >there.json
-  expect 0 lubricants get "back-$oil" --output json
-  grep -vE '"(name|etag|revision|create_time|revision_create_time)"' "$folder/out" >back.json
-  cmp -s there.json back.json || fail "lubricants/$oil is not the same after export and import"
-done
+oils=(paper-fluid-1 paper-fluid-2 paper-fluid-3 shell-t9 excel cold my-oil)
+without_dates() { grep -vE '"(name|etag|revision|create_time|revision_create_time)"' "$1"; }
+expect 0 lubricants export "${oils[@]}" --output csv --file there.csv
+err_is_empty
+sed '2,$s,^lubricants/,lubricants/back-,' there.csv >back.csv
+expect 0 lubricants import back.csv
+expect 0 lubricants export "${oils[@]}" --file there.json
+expect 0 lubricants export "${oils[@]/#/back-}" --file back.json
+cmp -s <(without_dates there.json) <(without_dates back.json) || fail "an oil changes with export and import"
 expect 0 lubricants get back-cold
 out_has 'SAE J306 grade +75W-90'
 expect 0 lubricants export cold --output csv --file cold.csv
 sed '2s/,103,/,110,/' cold.csv >cold-2.csv
 expect 0 lubricants import cold-2.csv --replace
-out_has 'Limits of these values'
 expect 0 lubricants get cold
-out_has 'KV40 +110 '
-out_has 'thermal conductivity +0.14 .*0.01 +measured'
+out_has 'KV40 +110 ' 'thermal conductivity +0.14 .*0.01 +measured'
 expect 0 lubricants export cold --viscosity-table cold-table.csv
 grep -q '^-40,,98000,' cold-table.csv || fail "the table of viscosities lacks a cold one"
 
 echo "--- slips of a data sheet"
 expect 1 lubricants create slip --kv40 103 --kv100 15 --density15 868 --brookfield -40=150 \
   --base-oil-class pao
-err_has 'Did you mean 150 Pa s \(150000 mPa s\) at -40 C'
-expect 1 lubricants create slip --kv40 103 --kv100 15 --density15 0.895
-err_has '0.895 looks like g/cm3: write 0.895g/cm3 or 895$'
+err_has '150000'
 expect 1 lubricants create slip --kv40 103 --kv100 15 --uncertainty pressure-viscosity=1/GPa
-err_has 'pressure_viscosity_coefficient_per_pascal is computed, not stated'
-expect 1 lubricants get slip
+err_has 'pressure_viscosity_coefficient_per_pascal'
 expect 2 lubricants create latin --kv40 73.3 --kv100 8.86 --title "$(printf '\351l')"
-err_has 'not UTF-8'
-expect 0 lubricants list
-out_has 'SAE J306'
-out_has '^row-fresh .* 92\.4 '
+err_has 'UTF-8'
 expect 0 lubricants delete row-fresh
 expect 0 lubricants export --all --file all.json
 grep -q 'lubricants/row-fresh"' all.json || fail "an export lacks the deleted parent of a fluid"
@@ -355,33 +269,26 @@ cmp -s contact.csv contact-2.csv || fail "tooth contact: export, import, export 
 cmp -s series.csv series-2.csv || fail "series: export, import, export is not identical"
 awk -F, -v OFS=, 'NR == 5 { $3 = 7 } { print }' contact.csv >bent.csv
 expect 1 gear-sets create bent --like reference-axle --tooth-contact bent.csv --gear-teeth 37
-err_has 'row 5 column load_share'
-err_has 'R_g0'
+err_has 'row 5 column load_share' 'R_g0'
 awk 'BEGIN { print "position_micrometres,height_nanometres"
   for (i = 0; i < 300; i++) print i * 0.5 "," 300 * sin(i / 7) + 40 * sin(i * i) }' >profile.csv
 expect 0 surfaces create rough --like run-in --profile pinion,axial,profile.csv \
   --profile gear,radial,profile.csv
-out_has '^pinion +axial +300'
-out_has 'composite rms height .* fitted'
-out_has '! .*eta_G beta_G sigma_G is '
+out_has '^pinion +axial +300' 'composite rms height .* fitted' '^ *! .* [0-9.]+'
 expect 0 surfaces create filtered --like run-in --profile profile.csv --lambda-s 2.5um
 out_has '^both flanks +- +300 +0.5 +2.5 +- '
 expect 1 surfaces create waved --like run-in --profile profile.csv --lambda-c 3
-err_has 'lambda_c = 0.003 m leaves nothing of the profile'
+err_has 'lambda_c = 0.003 m'
 expect 0 surfaces create joined --like run-in --profile axial,profile.csv \
   --profile radial,profile.csv --as-published eq46
-out_has 'eq 46 as published'
+out_has 'eq 46'
 expect 1 surfaces create one --like run-in --profile profile.csv --as-published eq46
-err_has 'because eq 46 combines an AXIAL and a RADIAL profile'
+err_has 'eq 46'
 expect 2 surfaces create none --like run-in --as-published eq46
-err_has '--as-published applies to profiles'
-expect 2 point --lubricant paper-fluid-1 --speed 50 --as-published eq46
-err_has 'eq46 applies where measured profiles become a surface'
+err_has '--as-published'
 expect 0 validate contact.csv profile.csv table-oil.csv
 expect 0 vehicles create van --like passenger-car --mass '2.1 t' --wheel-radius 0.35
-out_has 'mass +2100 +kg .*user'
-out_has 'as in vehicles/passenger-car@[0-9]'
-out_lacks 'typical passenger car'
+out_has 'mass +2100 +kg .*user' 'vehicles/passenger-car@[0-9]'
 
 echo "--- schema and help"
 expect 0 schema lubricants
@@ -389,18 +296,16 @@ out_has 'thermal_conductivity_watts_per_metre_kelvin +0.001 +100 +W/\(m K\) +eq 
 expect 0 schema --output csv
 out_has '^Surface,asperity_radius_metres,'
 expect 1 schema lubrcant
-err_has 'did you mean "Lubricant"'
+err_has '"Lubricant"'
 expect 0 lubricants create --help-all
-out_has 'Allowed: 0.1 to( 1000 1/GPa)?'
-out_has '1/GPa \(eq 33'
+out_has ' 0.1 to( 1000 1/GPa)?' '1/GPa \(eq 33'
 TRIBODYN_SERVER=127.0.0.1:9 expect 0 lubricants create --help
-out_has 'No server answered'
-for topic in units files filters configuration options exit-codes; do expect 0 help $topic; done
 expect 0 help lubricants create
-expect 2 lubricant list
-err_has 'is lubricants meant'
+out_has '--kv40'
+expect 0 help units
+out_has 'GPa'
 expect 2 help unitz
-err_has 'is units meant'
+err_has 'units'
 
 echo "--- configuration: flag, environment, file"
 mkdir -p "$XDG_CONFIG_HOME/tribodyn"
@@ -411,22 +316,20 @@ TRIBODYN_OUTPUT=json expect 0 vehicles list
 out_is_json
 TRIBODYN_OUTPUT=json expect 0 vehicles list -o table
 out_has '^passenger-car'
+out_lacks $'\x1b' # not a terminal
 address=$TRIBODYN_SERVER
 unset TRIBODYN_SERVER
 expect 3 vehicles list
 export TRIBODYN_SERVER=$address
 printf 'outptu = csv\n' >"$XDG_CONFIG_HOME/tribodyn/config"
 expect 2 vehicles list
-err_has 'is output meant'
-err_has 'See tribodyn help configuration'
+err_has 'output' 'tribodyn help configuration'
 rm "$XDG_CONFIG_HOME/tribodyn/config"
 TRIBODYN_CONFIG=/nonexistent expect 2 vehicles list
 
 echo "--- colours only on terminals"
 expect 0 lubricants get my-oil --color always
 grep -q $'\x1b' out || fail "no colours with --color always"
-expect 0 lubricants get my-oil
-! grep -q $'\x1b' out || fail "colours in a pipe"
 if command -v script >/dev/null; then
   on_terminal() { TERM=xterm script -qec "$*" /dev/null </dev/null >"$folder/terminal"; }
   on_terminal "'$client' lubricants get my-oil"
@@ -451,7 +354,6 @@ completed() {
 [ "$(completed 'tribodyn lubricants get my')" = 'my-oil ' ] || fail "completion of a name"
 [ "$(completed 'tribodyn curve --lubricant paper-fluid-1,my')" = 'paper-fluid-1,my-oil ' ] || fail "completion of a second name"
 [ "$(completed 'tribodyn curve --surface=run')" = 'run-in ' ] || fail "completion after ="
-[ "$(completed 'tribodyn gear-sets exp')" = 'export ' ] || fail "completion of a command"
 [ "$(completed 'tribodyn validate units-')" = 'units-2.json ' ] || fail "completion of a file"
 
 echo "--- a batch whose full answer would be too large is written all the same"
@@ -470,12 +372,11 @@ expect 0 lubricants import many.json --output csv
 out_lines 1101
 expect 0 lubricants import many.json --replace --validate-only
 expect 1 lubricants import many.json --replace --validate-only --output json
-err_has 'one answer has no room for 1100 lubricants in full: leave --output out'
+err_has ' 1100 .*--output'
 
 echo "--- numbers that the model does not use"
 expect 0 lubricants create data-sheet --like paper-fluid-1 --flash-point 212C --pour-point 0
-out_has 'flash point +212 C'
-out_has 'pour point +0 C'
+out_has 'flash point +212 C' 'pour point +0 C'
 expect 0 lubricants export data-sheet --output csv --file data-sheet.csv
 grep -q 'flash_point_celsius,pour_point_celsius' data-sheet.csv || fail "the table lacks the flash point"
 ! grep -q 'flash_point_celsius[.]source' data-sheet.csv || fail "the flash point has a source"
@@ -485,9 +386,9 @@ out_lines 2
 expect 0 lubricants update data-sheet --unset flash-point
 out_lacks 'flash point'
 expect 2 lubricants update data-sheet --provenance pour-point=measured
-err_has "'pour-point' is not a parameter of a lubricant"
+err_has "'pour-point'"
 expect 1 lubricants update data-sheet --pour-point -200
-err_has '--pour-point = -200 C; allowed: -120 to 100 C .ASTM D97.'
+err_has '--pour-point = -200 C.* -120 to 100 C .ASTM D97.'
 expect 0 lubricants list --filter 'pour_point_celsius <= 0' --output csv
 out_lines 2
 cd "$here" || exit 1

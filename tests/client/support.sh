@@ -15,11 +15,7 @@ start_server() {
   "$server" --listen 127.0.0.1:0 --database "$folder/db.sqlite" --port-file "$folder/port" "$@" \
     >>"$folder/server.log" 2>&1 &
   server_pid=$!
-  for _ in $(seq 600); do
-    [ -s "$folder/port" ] && break
-    kill -0 "$server_pid" 2>/dev/null || break
-    sleep 0.1
-  done
+  until [ -s "$folder/port" ] || ! kill -0 "$server_pid" 2>/dev/null; do sleep 0.02; done
   if [ ! -s "$folder/port" ]; then
     cat "$folder/server.log"
     echo "the server did not start"
@@ -33,9 +29,9 @@ start_server() {
 stop_server() {
   [ -n "$server_pid" ] || return 0
   kill "$server_pid" 2>/dev/null
-  for _ in $(seq 300); do
+  for _ in $(seq 1500); do
     kill -0 "$server_pid" 2>/dev/null || break
-    sleep 0.1
+    sleep 0.02
   done
   kill -9 "$server_pid" 2>/dev/null
   wait "$server_pid" 2>/dev/null
@@ -64,9 +60,17 @@ expect() {
   "$client" "$@" >"$folder/out" 2>"$folder/err" </dev/null || code=$?
   [ "$code" -eq "$wanted" ] || fail "tribodyn $asked: exit code $code, not $wanted"
 }
-out_has() { grep -qE -- "$1" "$folder/out" || fail "tribodyn $asked: no '$1' on standard output"; }
+# _in FILE NAME PATTERN...: each pattern is in the file.
+_in() {
+  local file=$1 name=$2
+  shift 2
+  for part; do
+    grep -qE -- "$part" "$folder/$file" || fail "tribodyn $asked: no '$part' on standard $name"
+  done
+}
+out_has() { _in out output "$@"; }
+err_has() { _in err error "$@"; }
 out_lacks() { ! grep -qE -- "$1" "$folder/out" || fail "tribodyn $asked: '$1' on standard output"; }
-err_has() { grep -qE -- "$1" "$folder/err" || fail "tribodyn $asked: no '$1' on standard error"; }
 out_lines() {
   local lines
   lines=$(wc -l <"$folder/out")
