@@ -283,6 +283,14 @@ TEST(CurveSensitivityReport, CsvHasAColumnForEachFigureAndParameter) {
   EXPECT_EQ(lines[3].cells[at - 1], "7");
 }
 
+TEST(SensitivityReport, SaysWhyThereAreNone) {
+  v1::PointResult result;
+  v1::RangeWarning& warning = *result.add_warnings();
+  warning.set_code("NO_SENSITIVITIES");
+  warning.set_message("the flanks part");
+  EXPECT_TRUE(has_text(sensitivity_report(result), "the flanks part"));
+}
+
 CurveUncertainty sample_uncertainty(const v1::Simulation& curve) {
   CurveUncertainty out;
   for (const v1::CurvePoint& point : curve.result().points()) {

@@ -324,6 +324,20 @@ TEST(CurveReport, HasOneLinePerSpeedAndTheReasonOfAMissingOne) {
   }
 }
 
+TEST(CurveReport, OfIndependentPointsAndOfAJumpDiffersFromThatOfASweep) {
+  v1::Simulation curve = sample_curve("2", 1);
+  const std::string sweep = curve_report(curve, {});
+  v1::BranchEnd* end = curve.mutable_result()->mutable_points(10)->mutable_branch_end();
+  end->set_gone_at_kilometres_per_hour(69.25);
+  EXPECT_GT(curve_report(curve, {}).size(), sweep.size());
+  curve = sample_curve("2", 1);
+  curve.mutable_inefficiency_curve()->clear_direction();
+  curve.mutable_inefficiency_curve()->set_independent_points(true);
+  curve.mutable_result()->set_independent_points(true);
+  EXPECT_NE(curve_report(curve, {}), sweep);
+  EXPECT_TRUE(holds(points_csv({curve}), ",INDEPENDENT_POINTS,"));
+}
+
 TEST(CurveReport, PrintsErrorEstimatesBesideTheFigures) {
   v1::Simulation curve = sample_curve("2", 1);
   auto& points = *curve.mutable_result()->mutable_points();
