@@ -21,6 +21,7 @@ CREATE TABLE projects (
   deletions INTEGER NOT NULL DEFAULT 0 CHECK (deletions >= 0),
   forgotten_event INTEGER NOT NULL DEFAULT 0 CHECK (forgotten_event BETWEEN 0 AND last_event)
 ) STRICT, WITHOUT ROWID;
+INSERT INTO projects (name) VALUES ('default');
 
 CREATE TABLE resources (
   id INTEGER PRIMARY KEY,
