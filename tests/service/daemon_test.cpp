@@ -533,8 +533,9 @@ TEST(Flags, ADatabaseOfAnotherVersionHasAnExitCodeOfItsOwn) {
   const std::string database = folder.file("db");
   { Store store(database); }
   SQLite::Database(database, SQLite::OPEN_READWRITE).exec("DELETE FROM format");
-  for (std::vector<std::string> arguments :
-       {std::vector<std::string>{}, {"--check"}, {"check"}, {"tokens", "list"}}) {
+  const std::vector<std::vector<std::string>> uses = {
+      {}, {"--check"}, {"check"}, {"tokens", "list"}};
+  for (std::vector<std::string> arguments : uses) {
     arguments.insert(arguments.end(), {"--database", database});
     std::string log;
     EXPECT_EQ(run_briefly(arguments, &log), 6) << log;
