@@ -24,15 +24,6 @@
 namespace tribodyn::server {
 namespace {
 
-template <class Detail>
-std::optional<Detail> detail(const google::rpc::Status& status) {
-  for (const auto& any : status.details()) {
-    Detail out;
-    if (any.UnpackTo(&out)) return out;
-  }
-  return std::nullopt;
-}
-
 class AppTest : public testing::Test {
  protected:
   template <class Request>

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <ostream>
 #include <set>
@@ -16,15 +15,14 @@
 #include "server/resources/gear_set_checks.h"
 #include "server/resources/imports/import_surface.h"
 #include "server/simulation/campaign_inputs.h"
-#include "server/simulation/contact_inputs.h"
 #include "server/simulation/cycle_evaluation.h"
 #include "server/simulation/point_comparison.h"
 #include "server/simulation/point_evaluation.h"
 #include "server/simulation/point_explanation.h"
 #include "server/simulation/profile_evaluation.h"
 #include "server/simulation/rig_evaluation.h"
-#include "server/simulation/simulation_inputs.h"
 #include "server/simulation/viscosity_evaluation.h"
+#include "tests/service/checked_requests.h"
 #include "tests/service/contract_methods.h"
 #include "tests/service/support.h"
 #include "tribodyn/v1/schemas.pb.h"
@@ -36,30 +34,6 @@ namespace {
 using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
-using testing::AllOf;
-using testing::Contains;
-using testing::Field;
-using testing::HasSubstr;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-auto violation(const std::string& field, const std::string& text) {
-  return Contains(
-      AllOf(Field(&Violation::field, field), Field(&Violation::description, HasSubstr(text))));
-}
-
-Violations check(const v1::Simulation& simulation) {
-  Violations violations;
-  read_simulation(simulation, seed_lookup(), "simulation", violations);
-  return violations;
-}
-
-Violations check(const v1::EvaluateContactRequest& request) {
-  Violations violations;
-  read_contact(request, seed_lookup(), violations);
-  return violations;
-}
 
 v1::EvaluatePointsRequest one_point() {
   v1::EvaluatePointsRequest out;

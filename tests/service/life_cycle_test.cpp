@@ -26,15 +26,6 @@ using testing::HasSubstr;
 using State = v1::Simulation;
 using Step = MessageSource<v1::SimulationEvent>::Step;
 
-template <class Detail>
-std::optional<Detail> detail(const google::rpc::Status& status) {
-  for (const auto& any : status.details()) {
-    Detail out;
-    if (any.UnpackTo(&out)) return out;
-  }
-  return std::nullopt;
-}
-
 v1::CreateSimulationRequest request_of(const v1::Simulation& simulation,
                                        const std::string& request_id = "") {
   v1::CreateSimulationRequest out;

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -51,6 +52,16 @@ Resource seed(const std::string& name) {
   Resource resource;
   resource.ParseFromString(seed_lookup().find({name, 0})->body);
   return resource;
+}
+
+/// Returns the detail of this type of an error; nullopt if it has none.
+template <class Detail>
+std::optional<Detail> detail(const google::rpc::Status& status) {
+  for (const auto& any : status.details()) {
+    Detail out;
+    if (any.UnpackTo(&out)) return out;
+  }
+  return std::nullopt;
 }
 
 /// Returns the violations of an error, "path: sentence" each.

@@ -3,41 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "server/contract/check_message.h"
-#include "server/simulation/contact_inputs.h"
-#include "server/simulation/simulation_inputs.h"
+#include "tests/service/checked_requests.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {
 namespace {
 
-using testing::AllOf;
-using testing::Contains;
-using testing::Field;
-using testing::HasSubstr;
 using testing::IsEmpty;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-auto violation(const std::string& field, const std::string& text) {
-  return Contains(
-      AllOf(Field(&Violation::field, field), Field(&Violation::description, HasSubstr(text))));
-}
-
-Violations check(const v1::Simulation& simulation) {
-  Violations violations;
-  read_simulation(simulation, seed_lookup(), "simulation", violations);
-  return violations;
-}
-
-Violations check(const v1::EvaluateContactRequest& request) {
-  Violations violations;
-  read_contact(request, seed_lookup(), violations);
-  return violations;
-}
 
 TEST(Contact, ReasonableRequestsPass) {
   EXPECT_THAT(check(contact_request()), IsEmpty());
