@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "server/contract/check_message.h"
+#include "server/contract/resource_names.h"
 #include "tests/service/checked_requests.h"
 #include "tests/service/support.h"
 
@@ -11,6 +12,15 @@ namespace tribodyn::server {
 namespace {
 
 using testing::IsEmpty;
+
+TEST(RevisionName, EndsInANumberAsItIsPrinted) {
+  EXPECT_EQ(parse_revision_name("lubricants/my-oil@12", "lubricants")->revision, 12);
+  for (const char* number :
+       {"", "0", "01", "-1", "+1", "1x", " 1", "2147483648", "99999999999999999999"}) {
+    EXPECT_FALSE(parse_revision_name("lubricants/my-oil@" + std::string(number), "lubricants"))
+        << number;
+  }
+}
 
 TEST(Contact, ReasonableRequestsPass) {
   EXPECT_THAT(check(contact_request()), IsEmpty());
