@@ -8,7 +8,6 @@
 #include "client/cpp/resources/json_input.h"
 #include "client/cpp/text/csv.h"
 #include "client/cpp/text/progress.h"
-#include "client/cpp/text/progress.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
 #include "tribodyn/client/connection.h"
