@@ -530,7 +530,7 @@ TEST_F(Library, RangesInTheHelpAreThoseOfTheServer) {
     }
   }
   std::cout << compared << " ranges compared\n";
-  // What the client checks or scales before it asks, and the budget of a campaign that exists.
+  // The client itself checks or scales these; the budgets apply to existing campaigns.
   EXPECT_EQ(own, (std::set<std::string>{"--budget-points", "--budget-processor-seconds",
                                         "--condition-weights", "--confidence", "--count",
                                         "--levels", "--limit", "--map-tolerance", "--seed",
