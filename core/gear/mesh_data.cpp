@@ -44,8 +44,15 @@ MeshData::MeshData(const GearSet& set)
          coefficient(s.gear_contact_radius.cosine, i), coefficient(s.mesh_stiffness.sine, i),
          coefficient(s.mesh_stiffness.cosine, i), coefficient(s.static_transmission_error.sine, i),
          coefficient(s.static_transmission_error.cosine, i), 0, 0});
-    harmonics_.back().pinion_order = static_cast<double>(i + 1) * pinion_teeth_;
-    harmonics_.back().gear_order = static_cast<double>(i + 1) * gear_teeth_;
+    Harmonic& h = harmonics_.back();
+    h.pinion_order = static_cast<double>(i + 1) * pinion_teeth_;
+    h.gear_order = static_cast<double>(i + 1) * gear_teeth_;
+    const double pinion_radius = std::hypot(h.radius_p_sin, h.radius_p_cos);
+    const double gear_radius = std::hypot(h.radius_g_sin, h.radius_g_cos);
+    orders_.push_back({std::hypot(h.error_sin, h.error_cos) + pinion_radius / h.pinion_order +
+                           gear_radius / h.gear_order,
+                       std::hypot(h.stiffness_sin, h.stiffness_cos) / stiffness_,
+                       pinion_radius / pinion_radius_ + gear_radius / gear_radius_});
   }
   if (count <= kMostExpandedHarmonics) expand();
   const ToothContactTables& t = set.tables;

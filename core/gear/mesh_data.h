@@ -34,6 +34,13 @@ struct MeshPhase {
   double offset = 0;                         ///< of theta from there [rad]
 };
 
+/// Amplitudes of one order of eqs 8, 9, 10 and 11.
+struct MeshOrder {
+  double displacement = 0;  ///< of e, and of the radii's integrals over their angles, added [m]
+  double stiffness = 0;     ///< of k_m over its mean [-]
+  double radius = 0;        ///< of R_p and R_g over their means, added [-]
+};
+
 /// One flank pair at one mesh phase; columns of ToothContactTables. Real: double or a pack.
 template <class Real>
 struct FlankKinematicsOf {
@@ -130,6 +137,9 @@ class MeshData {
   /// Up to which distance an expansion serves [rad]; 0: there are none.
   double series_reach() const { return reach_; }
 
+  /// Of orders 1, 2 ... of the mesh frequency, as many as the series have.
+  const std::vector<MeshOrder>& orders() const { return orders_; }
+
   int intervals() const { return intervals_; }  ///< of the tables per mesh cycle
   /// The interval that a phase in [0, 1] cycles is in.
   int interval_at(double phase) const {
@@ -158,6 +168,7 @@ class MeshData {
   int pinion_teeth_, gear_teeth_, intervals_;
   double pinion_radius_, gear_radius_, stiffness_, error_;
   std::vector<Harmonic> harmonics_;
+  std::vector<MeshOrder> orders_;
   std::vector<MeshExpansion> expansions_;  // around even angles; empty where they would be many
   double reach_ = 0;                       // of an expansion [rad]
   std::vector<std::array<FlankKinematics, kFlankPairs>> samples_;

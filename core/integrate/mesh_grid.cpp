@@ -1,7 +1,10 @@
 #include "core/integrate/mesh_grid.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
+
+#include "core/numerics/gauss_legendre.h"
 
 namespace tribodyn {
 namespace {
@@ -34,6 +37,50 @@ bool set_lane(const MeshData& mesh, const MeshPhase& phase, double lag, int lane
   return true;
 }
 
+/// sum V_s W^0.8 of the flank pairs at a phase of an interval, under a mesh force and a pinion
+/// speed of 1: friction grows more slowly than the load, so that it has a kink wherever a pair
+/// takes over, also where the shares add up to 1.
+double friction_power(const MeshData& mesh, int interval, double phase) {
+  constexpr double kLoadExponent = 0.8;
+  std::array<FlankKinematics, kFlankPairs> flanks;
+  mesh.flanks(interval, phase, flanks);
+  const double ratio = static_cast<double>(mesh.pinion_teeth()) / mesh.gear_teeth();
+  double sum = 0;
+  for (const FlankKinematics& flank : flanks) {
+    if (!(flank.load_share > 0)) continue;
+    sum += std::pow(flank.load_share, kLoadExponent) * flank_motion(flank, 1, ratio).sliding_speed;
+  }
+  return sum;
+}
+
+double kink_error_of(const MeshData& mesh, int steps) {
+  const int intervals = mesh.intervals();
+  if (steps % intervals == 0) return 0;
+  constexpr int kNodes = 4;
+  const GaussLegendre<kNodes>& rule = gauss_legendre<kNodes>();
+  const auto at = [&](double phase) {
+    return friction_power(mesh, mesh.interval_at(phase), phase);
+  };
+  double sum = 0, error = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double start = static_cast<double>(i) / steps, end = static_cast<double>(i + 1) / steps;
+    double exact = 0;
+    for (double from = start; from < end - 1e-12;) {
+      const int interval = mesh.interval_at(from + 1e-12);
+      const double to = std::min(end, static_cast<double>(interval + 1) / intervals);
+      for (int n = 0; n < kNodes; ++n) {
+        exact += rule.weight(n) * (to - from) *
+                 friction_power(mesh, interval, from + rule.node(n) * (to - from));
+      }
+      from = to;
+    }
+    const double simpson = (end - start) / 6 * (at(start) + 4 * at(0.5 * (start + end)) + at(end));
+    sum += exact;
+    error += std::abs(simpson - exact);
+  }
+  return sum > 0 ? error / sum : 0;
+}
+
 }  // namespace
 
 MeshGrid::MeshGrid(const MeshData& mesh, double half_backlash, int steps, double reduced_modulus,
@@ -44,6 +91,7 @@ MeshGrid::MeshGrid(const MeshData& mesh, double half_backlash, int steps, double
       contact_(2 * steps + 1),
       contacts_{1, {}, {}, {}, ContactGeometries(reduced_modulus, options)},
       contacts_at_starts_{2, {}, {}, {}, ContactGeometries(reduced_modulus, options)},
+      kink_error_(kink_error_of(mesh, steps)),
       series_reach_(2 * mesh.series_reach()) {
   // From flanks that touch on the drive side to those on the coast side.
   const double through_gap =

@@ -71,6 +71,10 @@ class MeshGrid {
     Columns starts, middles;
   };
   const MeshColumns& mesh_columns(int side) const { return side > 0 ? drive_ : coast_; }
+  /// The relative error of Simpson's rule for the friction power of a mesh cycle at even loads, by
+  /// kinks of the tables inside of steps; the errors of single steps are added without regard to
+  /// sign. 0 where all steps end on samples.
+  double kink_error() const { return kink_error_; }
   /// Up to which distance the series there serve, to 4e-11 of the highest harmonic [rad]; 0: there
   /// are none.
   double series_reach() const { return series_reach_; }
@@ -84,6 +88,7 @@ class MeshGrid {
   std::vector<std::array<int, kFlankPairs>> contact_;
   GridContacts contacts_, contacts_at_starts_;
   MeshColumns drive_, coast_;
+  double kink_error_;
   double series_reach_;
 };
 

@@ -114,6 +114,27 @@ bool may_be_branches(const BranchPoint& a, const BranchPoint& b) {
          (!of_one_kind(a, b) || distance(a, b) > kSwingDifferenceOfBranches);
 }
 
+BranchPoint follow_towards(double speed, const BranchPoint& from, const BranchSolver& solver,
+                           std::optional<BranchEnd>& end) {
+  // Of the speed, relative: where a branch doubles, shooting finds nothing that far.
+  constexpr double kLongestGap = 0.05;
+  BranchPoint at = from;
+  if (!solver.by_shooting) return at;
+  const auto left = [&] { return std::log(speed / at.speed); };
+  while (at.settled && std::abs(left()) > at.longest_step) {
+    std::optional<BranchPoint> found;
+    for (double step = at.longest_step; !found; step *= 2) {
+      if (step > std::max(at.longest_step, kLongestGap) || step > std::abs(left())) return at;
+      const double next = at.speed * std::exp(std::copysign(step, left()));
+      found = solver.by_shooting(next, at);
+      if (!found) found = solver.loud(next);
+    }
+    if (!end && may_be_branches(at, *found)) end = find_branch_end(at, *found, solver);
+    at = *found;
+  }
+  return at;
+}
+
 std::optional<BranchEnd> find_branch_end(const BranchPoint& before, const BranchPoint& after,
                                          const BranchSolver& solver) {
   const SolveOnBranch& any_method = solver.by_any_method;

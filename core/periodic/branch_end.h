@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 
 #include "core/periodic/carried_state.h"
@@ -14,6 +15,8 @@ struct BranchPoint {
   double swing = 0;         ///< of the transmission error: greatest less least [m]
   bool settled = false;     ///< it repeats
   long marched_cycles = 0;  ///< mesh cycles marched to find it; 0 if shooting found it
+  /// Of the speed, relative, to a neighbour: a longer step might miss a bifurcation.
+  double longest_step = std::numeric_limits<double>::infinity();
   CarriedState state;
 };
 
@@ -34,6 +37,8 @@ struct BranchSolver {
   SolveOnBranch by_shooting;  ///< not set: responses are only marched
   /// By shooting, or marched where shooting does not decide; not set: only shooting is wanted.
   SolveOnBranch by_any_method;
+  /// The response with contact loss at a speed, by shooting from PointStart::kLargeVibration.
+  std::function<std::optional<BranchPoint>(double)> loud;
 };
 
 /// Tightest relative tolerance of the solutions that locate an end: a hundredth of the distance of
@@ -47,6 +52,13 @@ inline constexpr int kMostBranchCycles = 400;
 /// Whether two neighbours of a sweep may be on different branches: flanks part at one of them only,
 /// the period differs, or the swing of the transmission error differs by 30 %.
 bool may_be_branches(const BranchPoint& a, const BranchPoint& b);
+
+/// Follows a branch towards a speed [m/s] by natural-parameter continuation, with steps that no
+/// bifurcation hides in (BranchPoint::longest_step). Returns the last point, from where one step
+/// reaches the speed, or the last one found. Where the branch ends on the way, it continues on that
+/// of the response with contact loss, and `end` is set unless it is already.
+BranchPoint follow_towards(double speed, const BranchPoint& from, const BranchSolver& solver,
+                           std::optional<BranchEnd>& end);
 
 /// Locates the end of a branch between two neighbours of a sweep by natural-parameter continuation
 /// (R. Seydel, Practical Bifurcation and Stability Analysis, 3rd ed., 2010, chapter 4).

@@ -52,9 +52,8 @@ std::vector<PeriodicOrbit> coulomb_orbits(const PeriodicProblem& problem,
   precise.tolerance = kPicardTolerance;
   PeriodicOrbit orbit = origin;
   std::vector<PeriodicOrbit> out;
-  const int intervals = problem.system.mesh().intervals();
-  GridComparison comparison(intervals);
-  const StepSequence sequence(intervals, least);
+  GridComparison comparison(problem);
+  const StepSequence sequence(problem.system.mesh().intervals(), least);
   for (int steps = sequence.first(); out.size() < kMostGrids && steps <= kMostStepsPerCycle;
        steps = sequence.after(steps, 1)) {
     const MeshGrid& grid = problem.grids.with_steps(steps);
@@ -62,7 +61,7 @@ std::vector<PeriodicOrbit> coulomb_orbits(const PeriodicProblem& problem,
     precise.first_cycles = 0;
     if (!solver.solve(grid, precise, orbit)) break;
     const double error =
-        out.empty() ? 0 : comparison.error(steps, orbit.figures) + orbit.picard_error;
+        out.empty() ? 0 : comparison.error(grid, orbit.figures) + orbit.picard_error;
     comparison.add(steps, orbit.figures, error);
     PeriodicOrbit& added = out.emplace_back(orbit);
     added.estimated_error = error;

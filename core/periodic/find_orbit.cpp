@@ -84,7 +84,7 @@ class GridRefinement {
         solver_(solver),
         work_(work),
         cycles_left_(cycles_left),
-        coarser_(system_.mesh().intervals()) {
+        coarser_(problem) {
     options_.renew_friction = search.renew_friction;
     options_.bilateral_contact = search.try_contact_first;
     // Not critical: with 0 and 0.6 random scenes take less than 0.1 % more work.
@@ -101,8 +101,9 @@ class GridRefinement {
              : kStepsPerOscillation) *
         mesh_oscillations(system_, problem_.mean_pinion_speed);
     if (of_oscillations > kMostStepsPerCycle) return std::nullopt;
-    const auto steps_from = [&](double fewest) {
-      return static_cast<int>(std::max(of_oscillations, fewest));
+    const int of_orders = least_steps_for_orders(problem_);
+    const auto steps_from = [&](int fewest) {
+      return std::max({static_cast<int>(of_oscillations), of_orders, fewest});
     };
     const bool loose = problem_.tolerance >= kLooseTolerance && search_.try_contact_first;
     least_ = steps_from(loose ? 12 : 24);
@@ -133,6 +134,7 @@ class GridRefinement {
       const bool has_tension = options_.bilateral_contact && orbit_.least_pressing_force < 0;
       if (is_compared && error <= problem_.tolerance && !has_tension) {
         if (!attracts(grid)) return std::nullopt;
+        orbit_.is_tapping = is_tapping_;
         orbit_.estimated_error = error;
         return std::move(orbit_);
       }
@@ -165,9 +167,7 @@ class GridRefinement {
   }
 
  private:
-  double step_error(const MeshGrid& grid) const {
-    return coarser_.error(grid.steps(), orbit_.figures);
-  }
+  double step_error(const MeshGrid& grid) const { return coarser_.error(grid, orbit_.figures); }
 
   /// Solves on the one grid whose error is known from the same orbit under Coulomb's friction.
   /// Returns nullopt if that orbit does not decide.
@@ -195,8 +195,10 @@ class GridRefinement {
 
   /// Solves from the first of the orbits whose steps are short enough.
   std::optional<PeriodicOrbit> polish_from_coulomb_orbit(const std::vector<PeriodicOrbit>& orbits) {
-    const auto doubt = [](const PeriodicOrbit& orbit) {
-      return kCoulombErrorFactor * orbit.estimated_error;
+    // Coulomb's friction follows the load without a kink where a pair takes over.
+    const auto doubt = [&](const PeriodicOrbit& orbit) {
+      return std::max(kCoulombErrorFactor * orbit.estimated_error,
+                      problem_.grids.with_steps(orbit.steps_per_mesh_cycle).kink_error());
     };
     const auto fits = std::find_if(orbits.begin(), orbits.end(), [&](const auto& each) {
       return doubt(each) <= kShareOfSteps * problem_.tolerance;
@@ -352,6 +354,7 @@ class GridRefinement {
       multiplier = *orbit_.multiplier_with_friction;
     }
     if (multiplier < 1 - doubt) return true;
+    if (multiplier <= 1 + doubt && !doubles) return orbit_.barely_attracts = true;
     // If the multiplier does not decide, the doubled period is tried.
     doubles_ =
         doubles || (multiplier > 1 + doubt && orbit_.jacobian->leading_multiplier_is_negative());

@@ -12,7 +12,8 @@ LeadingMultiplier leading_multiplier(const Eigen::Matrix<double, 7, 7>& monodrom
   (multipliers.array() - 1.0).abs().minCoeff(&free);
   multipliers(free) = 0;
   const double modulus = multipliers.cwiseAbs().maxCoeff(&largest);
-  return {modulus, multipliers(largest).real() < 0};
+  return {modulus, multipliers(largest).real() < 0, (multipliers.array() + 1.0).abs().minCoeff(),
+          (multipliers.array() - 1.0).abs().minCoeff()};
 }
 
 }  // namespace tribodyn

@@ -9,6 +9,9 @@ namespace tribodyn {
 struct LeadingMultiplier {
   double modulus = 0;
   bool is_negative = false;  ///< its real part: a disturbance then changes its side every period
+  /// Distance from -1, where the period doubles, of the multiplier nearest to it; and from 1, where
+  /// the branch folds.
+  double to_flip = 0, to_fold = 0;
 };
 
 /// Of the derivatives of the seven states of the section by themselves a period earlier.

@@ -15,6 +15,9 @@ struct CycleDerivatives;
 /// A periodic orbit, or the state from which shooting starts for one.
 struct PeriodicOrbit {
   MarchState state{};  ///< at mesh phase 0
+  /// The state that integration has reached, from where Newton's method started: the orbit that it
+  /// finds must be near (SingleShooting).
+  std::optional<MarchState> marched;
   Torques torques;
   int period = 1;  ///< [mesh cycles]
   FrozenFriction friction;
@@ -42,7 +45,9 @@ struct PeriodicOrbit {
   double estimated_error = 0;
   /// Floquet, modulus, with friction in the loop; absent where the map alone is clear enough.
   std::optional<double> multiplier_with_friction;
+  bool barely_attracts = false;  ///< that multiplier is within its error of 1
   bool contact_loss = false;
+  bool is_tapping = false;  ///< found from tapping_start()
   /// Smallest compression of touching flanks over the mean force; negative: tension under bilateral
   /// contact.
   double least_pressing_force = 0;

@@ -83,10 +83,6 @@ double PoincareMapJacobian::bound_of_floquet_radius(double enough) const {
   }
 }
 
-double PoincareMapJacobian::largest_multiplier() const { return leading().modulus; }
-
-bool PoincareMapJacobian::leading_multiplier_is_negative() const { return leading().is_negative; }
-
 const LeadingMultiplier& PoincareMapJacobian::leading() const {
   if (!leading_) leading_ = leading_multiplier(monodromy_);
   return *leading_;

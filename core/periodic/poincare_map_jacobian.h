@@ -33,11 +33,10 @@ class PoincareMapJacobian {
 
   /// Newton's step from a residual, both scaled.
   Vector step(const Vector& residual) const { return factors_.solve(-residual); }
-  /// Largest modulus of the Floquet multipliers. Computed once; later copies hold it.
-  double largest_multiplier() const;
-  /// Whether the multiplier of the largest modulus is negative: a disturbance then changes its side
-  /// every period.
-  bool leading_multiplier_is_negative() const;
+  /// Of the Floquet multipliers. Computed once; later copies hold it.
+  const LeadingMultiplier& leading() const;
+  double largest_multiplier() const { return leading().modulus; }
+  bool leading_multiplier_is_negative() const { return leading().is_negative; }
   /// Whether the largest modulus is proven to be below a limit, by norms of powers: cheaper than
   /// eigenvalues. Returns false if there is no proof, mostly within a percent of the limit. The
   /// bound is kept for the next call.
@@ -50,7 +49,6 @@ class PoincareMapJacobian {
   Eigen::Matrix<double, kUnknowns - 1, 1> flip_direction() const;
 
  private:
-  const LeadingMultiplier& leading() const;
   double bound_of_floquet_radius(double enough) const;
 
   Eigen::PartialPivLU<Eigen::Matrix<double, kUnknowns, kUnknowns>> factors_;

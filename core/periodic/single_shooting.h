@@ -13,6 +13,9 @@ namespace tribodyn {
 ///  3. If there is no Jacobian, the variational equations are integrated along; where the rates
 ///     jump, the saltation matrix takes the sensitivities across (PoincareMapJacobian).
 ///  4. State and torque take Newton's step; Shooting decides whether the Jacobian serves again.
+///  5. The search fails once it is farther from the state that integration reached than flanks can
+///     move: twice the backlash and the static deflection. An orbit out there may attract, but not
+///     from the start that was asked for.
 /// (R. Seydel, Practical Bifurcation and Stability Analysis, 3rd ed., 2010, chapter 7; R. I. Leine
 /// and H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems, 2004.)
 class SingleShooting final : public Shooting {
@@ -34,8 +37,12 @@ class SingleShooting final : public Shooting {
   double newton_step() override;
   bool evaluate(Nodes nodes) override;
   bool march(MarchState& state, Sensitivity* sensitivity);
+  /// Of the state at the section from PeriodicOrbit::marched, in the norm of the scales, as a
+  /// length [m].
+  double distance_from_marched() const;
 
   Rk4WithEvents march_;
+  double farthest_;  ///< from PeriodicOrbit::marched [m]
 };
 
 }  // namespace tribodyn

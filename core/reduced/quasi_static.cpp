@@ -265,25 +265,22 @@ std::optional<PeriodicOrbit> solve_quasi_static(const PeriodicProblem& problem) 
   PicardIteration iteration(problem);
   PeriodicOrbit best;
   best.torques = problem.torques;
+  const int least = problem.tolerance < kLooseTolerance ? 24 : 12;
   const StepSequence sequence(problem.system.mesh().intervals(),
-                              problem.tolerance < kLooseTolerance ? 24 : 12);
-  const auto after = [&](int steps) {
-    return sequence.after(steps, best.estimated_error / problem.tolerance);
-  };
-  for (int steps = sequence.first();; steps = after(steps)) {
-    const bool first = best.steps_per_mesh_cycle == 0;
+                              std::max(least, least_steps_for_orders(problem)));
+  GridComparison coarser(problem);
+  for (int steps = sequence.first(); steps <= kMostStepsPerCycle;
+       steps = sequence.after(steps, best.estimated_error / problem.tolerance)) {
+    const MeshGrid& grid = problem.grids.with_steps(steps);
+    const bool first = !coarser.is_possible();
     const double enough = first ? std::max(5 * problem.tolerance, 1e-4) : 0.2 * problem.tolerance;
-    const OrbitFigures coarser = best.figures;
-    if (!iteration.solve(problem.grids.with_steps(steps), enough, best)) return std::nullopt;
-    if (!first) {
-      const double finer = static_cast<double>(steps) / best.steps_per_mesh_cycle;
-      const double change = best.figures.distance(coarser);
-      best.estimated_error =
-          step_error(change, square(finer), best.estimated_error, finer) + best.picard_error;
-    }
+    if (!iteration.solve(grid, enough, best)) return std::nullopt;
     best.steps_per_mesh_cycle = steps;
-    const bool enough_steps = !first && best.estimated_error <= problem.tolerance;
-    if (enough_steps || after(steps) > kMostStepsPerCycle) break;
+    if (!first) {
+      best.estimated_error = coarser.error(grid, best.figures) + best.picard_error;
+      if (best.estimated_error <= problem.tolerance) break;
+    }
+    coarser.add(steps, best.figures, best.estimated_error);
   }
   return best;
 }
@@ -330,7 +327,10 @@ bool passes_quasi_static_screen(const PeriodicProblem& problem) {
   const GearPairSystem& system = problem.system;
   const Torques& torques = problem.torques;
   MeshGrids& grids = problem.grids;
-  if (torques.pinion == 0) return false;
+  if (torques.pinion == 0 ||
+      resonant_weight(system, torques, problem.mean_pinion_speed) > problem.tolerance) {
+    return false;
+  }
   const ContactRegime regime = regime_under(torques);
   const double speed = problem.mean_pinion_speed;
   const auto moved_without_friction = [&](const MeshGrid& grid, ImposedMotion& motion,

@@ -10,6 +10,7 @@
 #include "core/study/point_by_shooting.h"
 #include "core/study/quasi_static_point.h"
 #include "core/study/range_warnings.h"
+#include "core/study/response_warnings.h"
 #include "core/study/unused_tolerance.h"
 
 namespace tribodyn {
@@ -71,6 +72,11 @@ PointResult solve_from(PreparedScene& prepared, const OperatingCondition& condit
     const double change = std::abs(result.pinion_torque - data_torque);
     if (!iterates || pass == kMostPasses ||
         change <= kSameTorque * std::abs(result.pinion_torque)) {
+      if (result.settled) {
+        if (auto other = coexistence_warning(problem, result.contact_loss)) {
+          result.warnings.push_back(*std::move(other));
+        }
+      }
       return std::move(result);
     }
     spent = result.statistics;
@@ -122,9 +128,9 @@ std::string why_no_sensitivities(const Scene& scene, const PointResult& result) 
 }
 
 void add_warnings(const Scene& scene, const PointOptions& options, PointResult& result) {
-  std::vector<RangeWarning> of_the_march = std::move(result.warnings);
+  std::vector<RangeWarning> of_the_response = std::move(result.warnings);
   result.warnings = range_warnings(scene, result);
-  std::move(of_the_march.begin(), of_the_march.end(), std::back_inserter(result.warnings));
+  std::move(of_the_response.begin(), of_the_response.end(), std::back_inserter(result.warnings));
   if (auto unused = unused_march_tolerance(options, result)) {
     result.warnings.push_back(*std::move(unused));
   }

@@ -9,6 +9,7 @@
 #include "core/study/orbit_record.h"
 #include "core/study/point_start.h"
 #include "core/study/response_record.h"
+#include "core/study/response_warnings.h"
 
 namespace tribodyn {
 
@@ -39,6 +40,9 @@ std::optional<OrbitSearch> search_from(const PointProblem& problem, PointStart s
   const OperatingTarget& target = problem.target;
   const PointOptions& options = problem.options;
   if (target.torques.pinion == 0) return std::nullopt;  // nothing holds the flanks together
+  if (!from && start == PointStart::kLargeVibration) {
+    if (const auto loud = loud_response(problem)) return search_from(problem, start, loud);
+  }
   OrbitSearch search;
   search.maximum_mesh_cycles = options.maximum_mesh_cycles;
   search.allow_transient_march = options.method != SteadyStateMethod::kShooting;
@@ -84,12 +88,15 @@ std::optional<ShotPoint> solve_by_shooting(const PointProblem& problem, PointSta
   sample_orbit(problem.system(), *orbit, solved, contacts, history);
   out.history = history.take();
   if (problem.options.sensitivities) shot.sensitivity = sensitivity_of(problem, *orbit);
+  out.warnings = orbit_warnings(*orbit);
   static_cast<SolverWork&>(out.statistics) = work;
   out.statistics.contact_solutions = problem.tally.solutions;
   out.statistics.periodicity_defect = orbit->defect;
   out.statistics.largest_multiplier = orbit->multiplier_with_friction
                                           ? *orbit->multiplier_with_friction
                                           : orbit->jacobian->largest_multiplier();
+  out.statistics.distance_to_flip = orbit->jacobian->leading().to_flip;
+  out.statistics.distance_to_fold = orbit->jacobian->leading().to_fold;
   return shot;
 }
 

@@ -32,8 +32,8 @@ enum class PointModel {
 /// Where a single point starts; it decides the branch where two responses coexist.
 enum class PointStart {
   kQuasiStatic,     ///< wound up to the static equilibrium: the low-amplitude branch
-  kLargeVibration,  ///< the same, released from 60 um more mesh deflection: the vibro-impact branch
-                    ///< where it exists
+  kLargeVibration,  ///< the response with contact loss where one exists (find_loud_response());
+                    ///< elsewhere released from 60 um more mesh deflection
 };
 
 /// How the steady state of the full model is found.
@@ -52,6 +52,9 @@ struct PointOptions {
   PointStart start = PointStart::kQuasiStatic;
   std::optional<CarriedState> carried_state;  ///< overrides start
   bool probe_coexisting_response = false;     ///< also settle from the other start and compare
+  /// Adds the warning RESPONSES_COEXIST where another response is found under Coulomb's friction.
+  /// Costs up to a millisecond for each speed and load of a prepared gear set near a resonance.
+  bool warn_of_coexisting_response = true;
   SteadyStateMethod method = SteadyStateMethod::kAutomatic;
   /// Wanted relative error of both inefficiencies, the torque and the extremes of the transmission
   /// error [1e-8, 1e-2]: whichever model and method answers.

@@ -38,6 +38,9 @@ struct SolverStatistics : SolverWork {
   /// -ln(multiplier) over the period, and the multiplier is good to 3e-3 (1e-4 where it is nearest
   /// to 1: it is marched there): the rate to as much over the period.
   double slowest_decay_rate = 0;
+  /// Distance from -1 of the Floquet multiplier nearest to it, and from 1: where it is 0 the period
+  /// doubles, or the branch folds. By shooting; 0 otherwise.
+  double distance_to_flip = 0, distance_to_fold = 0;
 };
 
 /// Work over the recorded steady state [J]; input = output + losses + stored + parametric.

@@ -8,8 +8,18 @@
 
 namespace tribodyn {
 
+std::optional<CarriedState> loud_response(const PointProblem& problem) {
+  return problem.gear_set.other_responses().loud(problem.periodic(problem.options.tolerance));
+}
+
 SectionPoint point_start(const PointProblem& problem, PointStart start) {
   const GearPairSystem& system = problem.system();
+  if (start == PointStart::kLargeVibration) {
+    if (const auto loud = loud_response(problem)) {
+      return system.at_section(carried_start(system, *loud, problem.target),
+                               problem.target.torques);
+    }
+  }
   const double offset = start == PointStart::kLargeVibration ? kLargeVibrationDeflection : 0;
   constexpr double kTolerance = 1e-3;
   FrictionArms friction;

@@ -19,6 +19,7 @@ PreparedGearSet::PreparedGearSet(const GearSet& gear_set, const Solid& solid,
     : gear_set_(checked(gear_set)),
       mesh_(gear_set_),
       system_(mesh_, gear_set_.dynamics, options),
+      modes_(linear_modes(system_)),
       grids_(mesh_, gear_set_.dynamics.half_backlash,
              reduced_modulus(solid.youngs_modulus, solid.poissons_ratio), options) {}
 

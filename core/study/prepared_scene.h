@@ -1,11 +1,14 @@
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "core/contact/flank_contact_batch.h"
 #include "core/driveline/gear_pair_system.h"
+#include "core/driveline/linear_modes.h"
 #include "core/integrate/mesh_grid.h"
 #include "core/periodic/coulomb_orbits.h"
+#include "core/periodic/loud_response.h"
 #include "core/reduced/quasi_static.h"
 #include "core/study/scene.h"
 
@@ -22,18 +25,22 @@ class PreparedGearSet {
 
   const GearSet& gear_set() const { return gear_set_; }
   const GearPairSystem& system() const { return system_; }
+  const std::array<LinearMode, 3>& modes() const { return modes_; }
   MeshGrids& grids() { return grids_; }
   /// For studies that meet the same speeds and loads with many lubricants.
   CoulombOrbits& coulomb_orbits() { return coulomb_orbits_; }
   QuasiStaticScreen& quasi_static_screen() { return quasi_static_screen_; }
+  OtherResponses& other_responses() { return other_responses_; }
 
  private:
   GearSet gear_set_;
   MeshData mesh_;
   GearPairSystem system_;
+  std::array<LinearMode, 3> modes_;
   MeshGrids grids_;
   CoulombOrbits coulomb_orbits_;
   QuasiStaticScreen quasi_static_screen_;
+  OtherResponses other_responses_;
 };
 
 /// A scene with everything that its points share. One thread at a time. Keeps the scene's

@@ -3,6 +3,7 @@
 #include "core/study/operating_point.h"
 #include "core/study/point_by_shooting.h"
 #include "core/study/quasi_static_point.h"
+#include "core/study/response_warnings.h"
 
 namespace tribodyn {
 namespace {
@@ -29,6 +30,10 @@ PointFigures figures_of(const PointProblem& problem, const PeriodicOrbit& orbit,
   out.estimated_relative_error = known_error(orbit.estimated_error);
   out.contact_solutions = problem.tally.solutions;
   out.model = model;
+  out.warnings = orbit_warnings(orbit);
+  if (auto other = coexistence_warning(problem, orbit.contact_loss)) {
+    out.warnings.push_back(*std::move(other));
+  }
   if (problem.options.contact_summary) out.contact = contact_summary(problem, orbit);
   return out;
 }
@@ -101,6 +106,7 @@ PointFigures main_figures(const PointResult& r) {
           r.estimated_relative_error,
           r.statistics.contact_solutions,
           r.model,
+          r.warnings,
           contact_summary(r),
           r.sensitivities};
 }

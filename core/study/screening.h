@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "core/study/contact_summary.h"
 #include "core/study/point_result.h"
@@ -22,6 +23,7 @@ struct PointFigures {
   std::optional<double> estimated_relative_error;  ///< absent: not estimated
   long contact_solutions = 0;
   PointModel model = PointModel::kFull;  ///< used
+  std::vector<RangeWarning> warnings;  ///< of the response; of a marched one, all of a PointResult
   /// By PointOptions::contact_summary. Absent where no flank carries a load.
   std::optional<ContactSummary> contact;
   /// By PointOptions::sensitivities, on the grid of the figures.

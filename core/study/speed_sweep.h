@@ -40,7 +40,9 @@ struct SweepPoint {
 /// Cruise points over `vehicle_speeds` [m/s]: natural-parameter continuation in the order of the
 /// direction (R. Seydel, Practical Bifurcation and Stability Analysis, 3rd ed., 2010, chapter 4).
 ///  1. Each point starts from the steady state before it (but see
-///     SweepOptions::independent_points).
+///     SweepOptions::independent_points). Where a wide step might miss a bifurcation, the branch is
+///     followed to there through points between them, so that a curve does not depend on the number
+///     of its points.
 ///  2. Between neighbours that may be on different branches the end of the branch is looked for
 ///     (periodic/branch_end.h). With kShooting an end is reported only if shooting finds the branch
 ///     beyond it.

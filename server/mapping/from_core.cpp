@@ -147,15 +147,20 @@ void set_solver(v1::PointResult* out, const PointResult& result) {
   if (result.coexisting_response) {
     set(out->mutable_coexisting_response(), *result.coexisting_response);
   }
-  for (const RangeWarning& warning : result.warnings) {
-    v1::RangeWarning* added = out->add_warnings();
-    added->set_code(warning.code);
-    added->set_message(warning.sentence);
-  }
+  add_warnings(result.warnings, out->mutable_warnings());
   set(out->mutable_section_state(), result.section_state);
 }
 
 }  // namespace
+
+void add_warnings(const std::vector<RangeWarning>& warnings,
+                  google::protobuf::RepeatedPtrField<v1::RangeWarning>* out) {
+  for (const RangeWarning& warning : warnings) {
+    v1::RangeWarning* added = out->Add();
+    added->set_code(warning.code);
+    added->set_message(warning.sentence);
+  }
+}
 
 v1::EvaluateContactResponse to_message(const ContactSolution& s) {
   v1::EvaluateContactResponse out;

@@ -12,6 +12,10 @@ namespace tribodyn::server {
 /// Converts every field of a solved contact and adds the model version.
 v1::EvaluateContactResponse to_message(const ContactSolution& solution);
 
+/// Converts warnings and adds them.
+void add_warnings(const std::vector<RangeWarning>& warnings,
+                  google::protobuf::RepeatedPtrField<v1::RangeWarning>* out);
+
 /// Converts a limit and the name of its figure.
 v1::FigureLimit to_message(const FigureLimit& limit);
 

@@ -16,6 +16,7 @@
 #include "core/uncertainty/spread.h"
 #include "core/version.h"
 #include "server/contract/check_message.h"
+#include "server/mapping/from_core.h"
 #include "server/simulation/compared_fluid.h"
 #include "server/simulation/drawn_figures.h"
 
@@ -204,6 +205,7 @@ v1::ComparedPoint point_message(const ComputedFluid& fluid, std::size_t conditio
         figure_message(fluid, condition, kFlashTemperature);
   }
   out.set_contact_loss(fluid.stated[condition]->contact_loss);
+  add_warnings(fluid.points[condition].figures->warnings, out.mutable_warnings());
   out.set_solved_draws(fluid.solved_draws[condition]);
   for (const ValuesByCondition& draw : fluid.drawn) {
     if (!draw[condition]) out.set_refused_draws(out.refused_draws() + 1);

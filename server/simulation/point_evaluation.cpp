@@ -189,6 +189,18 @@ class Rows {
       out_.mutable_elasticities(static_cast<int>(i))->set_values(row, point.elasticities[i]);
     }
     if (point.is_one_sided) out_.set_elasticities_one_sided(row, true);
+    for (const RangeWarning& warning : figures.warnings) warn(row, warning);
+  }
+
+  void warn(int row, const RangeWarning& warning) {
+    const auto [at, is_new] =
+        warnings_.emplace(std::pair(warning.code, warning.sentence), out_.warnings_size());
+    if (is_new) {
+      v1::PointWarning& added = *out_.add_warnings();
+      added.set_code(warning.code);
+      added.set_message(warning.sentence);
+    }
+    out_.mutable_warnings(at->second)->add_rows(row);
   }
 
   void refuse(int row, const std::string& reason, const std::string& message) {
@@ -206,7 +218,8 @@ class Rows {
 
  private:
   v1::EvaluatePointsResponse out_;
-  std::map<std::pair<std::string, std::string>, int> numbers_;  // of refusals, from 1
+  std::map<std::pair<std::string, std::string>, int> numbers_;   // of refusals, from 1
+  std::map<std::pair<std::string, std::string>, int> warnings_;  // positions
 };
 
 bool is_finite(const PointFigures& figures) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "core/uncertainty/shapley.h"
 #include "core/version.h"
 #include "server/contract/check_message.h"
+#include "server/mapping/from_core.h"
 #include "server/mapping/to_core.h"
 #include "server/simulation/input_deviations.h"
 #include "server/simulation/point_comparison.h"
@@ -117,6 +119,7 @@ struct Combinations {
   std::array<std::vector<double>, kExplainedFigures> values;
   std::array<std::vector<double>, kExplainedFigures> solver_errors;
   int contact_losses = 0;
+  std::map<std::string, RangeWarning> warnings;  ///< the first of each code
   std::string refusal_reason, refusal_message;
 
   Combinations() {
@@ -140,6 +143,7 @@ struct Combinations {
           point.figures->estimated_relative_error.value_or(0) * std::abs(values[i][combination]);
     }
     if (point.figures->contact_loss) ++contact_losses;
+    for (const RangeWarning& each : point.figures->warnings) warnings.try_emplace(each.code, each);
   }
 };
 
@@ -155,6 +159,7 @@ void add_mean(const std::vector<double>& weights, ExplainedConditions& condition
       mean.refusal_message = each.refusal_message;
     }
     mean.contact_losses = std::max(mean.contact_losses, each.contact_losses);
+    mean.warnings.insert(each.warnings.begin(), each.warnings.end());
     for (std::size_t i = 0; i < kExplainedFigures; ++i) {
       for (std::size_t set = 0; set < kCombinations; ++set) {
         mean.values[i][set] += weights[k] * each.values[i][set];
@@ -360,6 +365,9 @@ v1::DifferenceExplanation explanation_message(const ComputedCombinations& all,
     }
   }
   out.set_contact_loss_combinations(stated.contact_losses);
+  for (const auto& [code, warning] : stated.warnings) {
+    add_warnings({warning}, out.mutable_warnings());
+  }
   for (const ExplainedConditions& draw : all.drawn) {
     if (draw[condition].is_refused()) out.set_refused_draws(out.refused_draws() + 1);
   }

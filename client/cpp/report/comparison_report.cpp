@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -365,6 +368,27 @@ void add_exact_inputs(const v1::ComparePointsResponse& response, Sheet& sheet) {
   }
 }
 
+/// Adds each warning of the points with the lubricants and speeds that have it.
+void add_point_warnings(const v1::ComparePointsRequest& request,
+                        const v1::ComparePointsResponse& response, Sheet& sheet) {
+  std::map<std::string, std::set<std::string>> places;  // by sentence
+  for (const v1::ComparedLubricant& lubricant : response.lubricants()) {
+    for (int k = 0; k < lubricant.points_size(); ++k) {
+      for (const v1::RangeWarning& each : lubricant.points(k).warnings()) {
+        const double speed = request.conditions(k).speed_kilometres_per_hour();
+        places[printable(each.message()) + ". [" + printable(each.code()) + "]"].insert(
+            lubricant_id(lubricant) + " at " + significant(speed) + " km/h");
+      }
+    }
+  }
+  if (places.empty()) return;
+  sheet.heading("Warnings");
+  for (const auto& [sentence, where] : places) {
+    sheet.remark(joined(std::vector<std::string>(where.begin(), where.end()), ", ") + ": " +
+                 sentence);
+  }
+}
+
 }  // namespace
 
 std::string input_text(const std::string& input) {
@@ -436,6 +460,7 @@ std::string comparison_report(const v1::ComparePointsRequest& request,
       sheet.remark(advice_text(mean.shares()));
     }
   }
+  add_point_warnings(request, response, sheet);
   sheet.heading("What is common, and what is not");
   sheet.remark(
       "Errors of the scene are common to all lubricants, measured values of two lubricants are "

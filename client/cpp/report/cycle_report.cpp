@@ -109,7 +109,11 @@ std::string error_text(const v1::CycleLubricant& lubricant) {
              ? std::string("of the solver not known, ")
              : "of the solver at most " + significant(1e-3 * lubricant.solver_error_joules(), 2) +
                    " kJ, ";
-  return out + std::to_string(lubricant.points()) + " points\n";
+  out += std::to_string(lubricant.points()) + " points\n";
+  for (const v1::RangeWarning& each : lubricant.warnings()) {
+    out += "  " + printable(each.message()) + ". [" + printable(each.code()) + "]\n";
+  }
+  return out;
 }
 
 }  // namespace

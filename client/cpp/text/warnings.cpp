@@ -19,7 +19,7 @@ struct KnownWarning {
   bool forbids_ranking;
 };
 
-constexpr std::array<KnownWarning, 20> kKnownWarnings = {{
+constexpr std::array<KnownWarning, 24> kKnownWarnings = {{
     {"COLD_INLET", "cold inlet, do not rank oils here", true, true},
     {"FILM_RATIO", "film thinner than the asperity model holds for", true, false},
     {"LIMITING_STRESS", "most of the loaded area on the limiting shear stress", true, false},
@@ -29,10 +29,14 @@ constexpr std::array<KnownWarning, 20> kKnownWarnings = {{
     {"ROUGHNESS_PRODUCT", "roughness outside the range of the asperity model", true, false},
     {"VISCOSITY_TEMPERATURE", "temperature outside the range in which viscosity was measured", true,
      false},
+    {"BARELY_ATTRACTS", "response that hardly attracts", false, false},
+    {"FLANKS_TAP", "flanks that tap each other under hardly any load", false, false},
     {"ISOTHERMAL", "isothermal model", false, false},
     {"NOT_SETTLED", "no steady period, averages over a record", false, false},
     {"PERIOD", "response with a period of several mesh cycles", false, false},
     {"QUASI_STATIC", "quasi-static model", false, false},
+    {"RATTLES", "rattle, averages with a statistical error", false, false},
+    {"RESPONSES_COEXIST", "another response at the same point", false, false},
     {"BASE_OIL_UNSPECIFIED", "class of base oil not stated", false, false},
     {"DENSITY_ESTIMATED", "density estimated, not measured", false, false},
     {"EXPANSION_ESTIMATED", "thermal expansion estimated, not measured", false, false},

@@ -25,6 +25,10 @@ const WARNINGS: Record<string, { words: string; level: Level }> = {
   PERIOD: { words: 'response with a period of several mesh cycles', level: 'note' },
   QUASI_STATIC: { words: 'quasi-static model', level: 'note' },
   PARAMETER_ESTIMATED: { words: 'some parameters are estimated', level: 'note' },
+  RESPONSES_COEXIST: { words: 'another response at the same point', level: 'caution' },
+  RATTLES: { words: 'rattle: averages with a statistical error', level: 'caution' },
+  FLANKS_TAP: { words: 'flanks tap each other under hardly any load', level: 'caution' },
+  BARELY_ATTRACTS: { words: 'response that hardly attracts', level: 'note' },
   NO_SENSITIVITIES: { words: 'no sensitivities', level: 'note' },
 };
 

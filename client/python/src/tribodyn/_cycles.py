@@ -150,6 +150,10 @@ def _attrs(answer: pb.EvaluateCycleResponse) -> dict[str, Any]:
         "surface_revision": answer.surface_revision,
         "vehicle_revision": answer.vehicle_revision,
         "model_version": answer.model_version,
+        "warnings": {
+            of.lubricant_revision: {each.code: each.message for each in of.warnings}
+            for of in answer.lubricants
+        },
         "input_warnings": {
             of.lubricant_revision: {each.code: each.message for each in of.input_warnings}
             for of in answer.lubricants

@@ -52,8 +52,8 @@ class Evaluations(Session):
         row has in place of the parameter of its lubricant or surface, with units as of create():
         "lubricant.relaxation_time_seconds", "surface.asperity_friction_coefficient". The server
         keeps nothing. A figure agrees with that of a point within the estimated errors of both.
-        ``model_options`` as of Options; ``status`` as of points(). ``attrs`` holds model_version and
-        the revisions used.
+        ``model_options`` as of Options; ``status`` as of points(). ``attrs`` holds model_version,
+        the revisions used and, by code, the warnings of the responses.
 
         ``contact_figures`` adds film_ratio_minimum and film_ratio_mean (lambda_s),
         contact_temperature_maximum_kelvin and contact_temperature_mean_kelvin,
@@ -125,7 +125,7 @@ class _Evaluation:
         arguments.check()
         self._calls = asyncio.Semaphore(_CALLS_AT_A_TIME)
         self._cells: dict[int, dict[str, Any]] = {}
-        self.attrs: dict[str, Any] = {"model_version": "", "revisions": []}
+        self.attrs: dict[str, Any] = {"model_version": "", "revisions": [], "warnings": {}}
 
     async def run(
         self, rows: Sequence[Mapping[str, Any]], progress_form: str
@@ -218,6 +218,7 @@ class _Evaluation:
             for name in self._figures.columns()
         }
         self.attrs["model_version"] = answer.model_version
+        self.attrs["warnings"].update({each.code: each.message for each in answer.warnings})
         for kind in ("lubricant", "gear_set", "surface", "vehicle"):
             revision = getattr(answer, kind + "_revision")
             if revision not in self.attrs["revisions"]:

@@ -228,6 +228,14 @@ def _compared(request: pb.ComparePointsRequest, answer: pb.ComparePointsResponse
         "mean": frame(in_columns(means), {}),
         "draws": answer.draws,
         "estimate_correlation": answer.estimate_correlation,
+        "warnings": {
+            each.lubricant_revision: {
+                warning.code: warning.message
+                for point in each.points
+                for warning in point.warnings
+            }
+            for each in answer.lubricants
+        },
         "inputs_without_uncertainty": {
             each.lubricant_revision: list(each.inputs_without_uncertainty)
             for each in answer.lubricants

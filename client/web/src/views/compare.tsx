@@ -26,6 +26,7 @@ import { OPTIONS } from '../request';
 import { titlesOf, useAnswer, useGearSets, useLoaded, useLubricants, useSchema } from '../resources';
 import { address, go, place, set } from '../router';
 import { useStore } from '../store';
+import { remarksOnce } from '../validity';
 
 const SHOWN_SHARES = 6;
 const PERCENT: Unit = { symbol: '%', factor: 100, offset: 0 };
@@ -119,7 +120,7 @@ export function Compare() {
                 <Reasons explanation={at === null ? reasons.value.mean : reasons.value.points?.[0]} names={names} />
               )}
             </section>
-            <Validity remarks={[]} isChecked={false}>
+            <Validity remarks={remarksOnce((answer.value?.lubricants ?? []).flatMap((each) => (each.points ?? []).flatMap((point) => point.warnings ?? [])))} isChecked={false}>
               <li class="note">Draws of the inputs are not compared with the ranges of the laws. <a href={address('/curves', { f: `${request.a},${request.b}`, sump: String(request.sump) })}>The curves of both</a> are.</li>
             </Validity>
             {difference && <MeasureNext difference={difference} names={lines} titles={names} />}

@@ -145,7 +145,7 @@ export function Cycles() {
             <Totals fluids={fluids} names={names} reference={names[0]!} />
             <Traces answer={found} names={names} />
             <Origins answer={found} names={names} />
-            <Validity remarks={remarksOnce(fluids.flatMap((each) => each.input_warnings ?? []))} isChecked={false}>
+            <Validity remarks={remarksOnce(fluids.flatMap((each) => [...(each.warnings ?? []), ...(each.input_warnings ?? [])]))} isChecked={false}>
               <li class="note">The cycle is cut into pieces of at most 1 s, in each of which the axle counts as steady at its mean speed.</li>
               <li class="note">In coast the axle counts as transmitting all of the braking.</li>
               <li class="note">All losses are mesh losses: bearings, churning and seals are not in them.</li>

@@ -1,0 +1,44 @@
+#include "core/study/response_warnings.h"
+
+#include <string>
+
+#include "core/number_text.h"
+#include "core/study/point_start.h"
+
+namespace tribodyn {
+
+std::vector<RangeWarning> orbit_warnings(const PeriodicOrbit& orbit) {
+  std::vector<RangeWarning> out;
+  if (orbit.barely_attracts) {
+    out.push_back({"BARELY_ATTRACTS",
+                   "the largest Floquet multiplier, " +
+                       number_text(orbit.multiplier_with_friction.value_or(1), 6) +
+                       ", is within its error of 1: disturbances hardly die out, or hardly grow"});
+  }
+  if (orbit.is_tapping) {
+    out.push_back({"FLANKS_TAP",
+                   "under so light a load the flanks tap each other once in a mesh cycle; released "
+                   "elsewhere in the backlash they may rattle for long, with far more loss"});
+  }
+  return out;
+}
+
+std::optional<RangeWarning> coexistence_warning(const PointProblem& problem, bool contact_loss) {
+  if (!problem.options.warn_of_coexisting_response) return std::nullopt;
+  std::string sentence;
+  if (contact_loss) {
+    OtherResponses& others = problem.gear_set.other_responses();
+    if (!others.has_quiet(problem.periodic(problem.options.tolerance))) return std::nullopt;
+    sentence = "a response without contact loss exists here too, or nearly: start = QUASI_STATIC";
+  } else {
+    const auto loud = loud_response(problem);
+    if (!loud) return std::nullopt;
+    sentence = "a response with contact loss that repeats after " + std::to_string(loud->period) +
+               (loud->period == 1 ? " mesh cycle" : " mesh cycles") +
+               " exists here too: start = LARGE_VIBRATION";
+  }
+  return RangeWarning{"RESPONSES_COEXIST",
+                      sentence + " leads there (found under a friction coefficient of 0.05)"};
+}
+
+}  // namespace tribodyn
