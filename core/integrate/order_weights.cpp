@@ -76,6 +76,16 @@ int resolving_steps(const GearPairSystem& system, const Torques& torques, double
   return static_cast<int>(std::ceil(0.5 * kNodesPerWave * order));
 }
 
+double weight_beyond(const GearPairSystem& system, const Torques& torques, double mean_pinion_speed,
+                     int order) {
+  const OrderWeights weights(system, torques, order_frequency(system, mean_pinion_speed));
+  double squares = 0;
+  for (int h = order + 1; h <= weights.highest(); ++h) {
+    squares += square(weights.weight(h) * weights.magnification(h));
+  }
+  return kCaution * std::sqrt(squares);
+}
+
 double resonant_weight(const GearPairSystem& system, const Torques& torques,
                        double mean_pinion_speed) {
   constexpr double kNearResonance = 3;  // magnification

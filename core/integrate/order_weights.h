@@ -42,6 +42,11 @@ double unresolved_error(const GearPairSystem& system, const Torques& torques,
 int resolving_steps(const GearPairSystem& system, const Torques& torques, double mean_pinion_speed,
                     double error);
 
+/// Bound of what the orders above one add to the response by inertia, relative to it: their weights,
+/// magnified; several add up as twice the root of their squares.
+double weight_beyond(const GearPairSystem& system, const Torques& torques, double mean_pinion_speed,
+                     int order);
+
 /// The largest weight that resonance magnifies threefold or more, magnified; 0: none is.
 double resonant_weight(const GearPairSystem& system, const Torques& torques,
                        double mean_pinion_speed);

@@ -13,8 +13,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr int kMostHarmonics = 96;
-
 Complex inverse(const Complex& z) { return std::conj(z) / std::norm(z); }
 
 /// The harmonics 1 ... count of signals at even phases, there and back.
@@ -164,7 +162,7 @@ void ImposedMotion::resize(std::size_t count) {
 InertialCorrection inertial_correction(const GearPairSystem& system, double mean_pinion_speed,
                                        const ImposedMotion& motion) {
   const int phases = static_cast<int>(motion.mesh_approach.size());
-  const Harmonics harmonics(phases, std::min(phases / 2 - 1, kMostHarmonics));
+  const Harmonics harmonics(phases, std::min(phases / 2 - 1, kMostCorrectedHarmonics));
   const int count = harmonics.count();
   const double first = mean_pinion_speed * system.mesh().pinion_teeth();
   const double pinion_radius = system.mesh().mean_pinion_contact_radius();
@@ -227,7 +225,7 @@ InertialCorrection inertial_correction(const GearPairSystem& system, double mean
 bool parametric_resonance_possible(const GearPairSystem& system, double mean_pinion_speed,
                                    const std::vector<double>& stiffness) {
   const int phases = static_cast<int>(stiffness.size());
-  const Harmonics harmonics(phases, std::min(phases / 2 - 1, kMostHarmonics));
+  const Harmonics harmonics(phases, std::min(phases / 2 - 1, kMostCorrectedHarmonics));
   const std::vector<Complex> ripple = harmonics.of(stiffness);
   const double natural = system.mesh_frequency();
   const double mean = system.mesh().mean_mesh_stiffness();

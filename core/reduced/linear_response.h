@@ -6,6 +6,9 @@
 
 namespace tribodyn {
 
+/// Harmonics of the mesh frequency that a correction has at most.
+inline constexpr int kMostCorrectedHarmonics = 96;
+
 /// A motion in which flanks follow each other without inertia, at even mesh phases n / count of one
 /// mesh cycle, n = 0 ... count - 1; `count` even, at least 8.
 struct ImposedMotion {
@@ -35,7 +38,8 @@ struct InertialCorrection {
 
 /// The response of eqs 1, 2, 3, 4, 5 and 6 to an imposed motion, linear about a mean: mean contact
 /// radii and mesh stiffness, flanks that never part.
-///  1. The imposed motion is expanded into harmonics, up to 96 and fewer than half of the phases.
+///  1. The imposed motion is expanded into harmonics, up to kMostCorrectedHarmonics and fewer than half of the
+///     phases.
 ///  2. With D_p, D_g the dynamic stiffnesses of the two sides of the mesh (gear or pinion, its
 ///     shaft and the rotor behind the shaft), w the imposed mesh approach and tau the unbalanced
 ///     torques of the imposed motion, each harmonic of the correction to x is the solution of

@@ -315,7 +315,9 @@ double quasi_static_model_error(const PeriodicProblem& problem, const PeriodicOr
   figures.torque = torque_of(problem, torques, loss + other_losses(system, regime, grid, moving));
   const double first_order = figures.distance(solution.figures);
   const double size = std::max(std::abs(figures.dte_minimum), std::abs(figures.dte_maximum));
-  return kMargin * first_order / (1 - change.growth) + change.unresolved / size;
+  const int harmonics = std::min(grid.steps() - 1, kMostCorrectedHarmonics);
+  return kMargin * first_order / (1 - change.growth) + change.unresolved / size +
+         weight_beyond(system, torques, speed, harmonics);
 }
 
 bool passes_quasi_static_screen(const PeriodicProblem& problem) {

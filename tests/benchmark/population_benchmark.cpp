@@ -20,9 +20,9 @@
 // The wild scenes of tests/support/random_place.h: does the answer err less than it says, what does
 // it cost, and does the march stay where shooting has ended? Run it when a tuning constant changes.
 //
-// The truth is the event-exact march from the response found, at a step tolerance of 1e-10. At 1e-3
-// a march from the start itself shows as well whether it leads to the same response, or whether the
-// answer warns of two.
+// The truth is the same response at a tolerance of 1e-7. That this is right at all, an event-exact
+// march shows: in every tenth scene it starts where the answer did, and leads to the same response,
+// unless the answer warns of two.
 namespace tribodyn {
 namespace {
 
@@ -36,19 +36,8 @@ struct Scored {
 };
 
 constexpr double kTolerances[] = {1e-5, 1e-3, 1e-2};  // the sharpest first: its truth serves all
-constexpr double kCheckedFromTheStart = 1e-3;
-
-PointOptions truth_options() {
-  PointOptions out;
-  out.model = PointModel::kFull;
-  out.method = SteadyStateMethod::kMarch;
-  out.tolerance = 1e-8;
-  out.march_step_tolerance = 1e-10;
-  out.march_settling_tolerance = 1e-8;
-  out.maximum_mesh_cycles = 1000;
-  out.warn_of_coexisting_response = false;
-  return out;
-}
+constexpr double kCheckedTolerance = 1e-3;
+constexpr int kCheckedEvery = 10;  // scenes
 
 bool warns(const PointResult& r, const std::string& code) {
   return std::any_of(r.warnings.begin(), r.warnings.end(),
@@ -76,7 +65,7 @@ class Judge {
       out.estimate = r.estimated_relative_error.value_or(0);
       if (!with_truth_ || !r.settled) return out;
       out.error = error_of(r);
-      if (tolerance == kCheckedFromTheStart) check_from_start(r);
+      if (tolerance == kCheckedTolerance && scene_ % kCheckedEvery == 0) check_from_start(r);
     } catch (const Refusal& refusal) {
       if (out.answer.empty()) {
         out.microseconds = 1e6 * (processor_seconds() - start);
@@ -90,26 +79,27 @@ class Judge {
   double error_of(const PointResult& r) {
     const double estimate = r.estimated_relative_error.value_or(0);
     if (truth_ && true_error(r, *truth_) <= estimate) return true_error(r, *truth_);
-    PointOptions options = truth_options();
+    PointOptions options;
+    options.model = PointModel::kFull;
+    options.method = SteadyStateMethod::kShooting;
+    options.tolerance = 1e-7;
+    options.warn_of_coexisting_response = false;
     if (r.model == PointModel::kFull) options.carried_state = carried_from(r);
-    const PointResult exact = solve_operating_point(place_.scene, place_.condition, options);
-    if (!exact.settled || !exact.inefficiency_rms) {
-      std::printf("scene %d (kind %d): no truth\n", scene_, place_.kind);
-      return 0;
-    }
-    truth_ = exact;
-    return true_error(r, exact);
+    truth_ = solve_operating_point(place_.scene, place_.condition, options);
+    return true_error(r, *truth_);
   }
 
   void check_from_start(const PointResult& r) const {
-    PointOptions options = truth_options();
-    options.tolerance = 1e-5;
-    options.march_step_tolerance = 1e-7;
-    options.march_settling_tolerance = 1e-6;
+    PointOptions options;
+    options.model = PointModel::kFull;
+    options.method = SteadyStateMethod::kMarch;
+    options.tolerance = 1e-4;
+    options.maximum_mesh_cycles = 600;
+    options.warn_of_coexisting_response = false;
     const PointResult marched = solve_operating_point(place_.scene, place_.condition, options);
     if (!marched.settled || !marched.inefficiency_rms) return;
     const double off = true_error(r, marched);
-    if (off <= 2e-5 + r.estimated_relative_error.value_or(0)) return;
+    if (off <= 1e-4 + r.estimated_relative_error.value_or(0)) return;
     std::printf("scene %d (kind %d): %.2e off the march from the start, stated %.2e%s\n", scene_,
                 place_.kind, off, r.estimated_relative_error.value_or(0),
                 warns(r, "RESPONSES_COEXIST") || warns(r, "FLANKS_TAP") ? ", warned" : "");

@@ -433,19 +433,13 @@ TEST(SweepSensitivities, AreThoseOfThePointsOnTheBranchThatIsFollowed) {
     OperatingCondition condition = cruise(speed);
     condition.vehicle_speed = each.vehicle_speed;  // to the last bit
     ASSERT_TRUE(each.result && each.result->sensitivities) << speed;
-    const PointResult same = solve_operating_point(scene, condition, point);
-    point.carried_state = carried_from(*each.result);
     const auto& parameters = each.result->sensitivities->parameters;
-    ASSERT_EQ(same.sensitivities->parameters.size(), parameters.size());
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-      EXPECT_EQ(parameters[i].derivative, same.sensitivities->parameters[i].derivative)
-          << parameters[i].parameter << " at " << speed;
-    }
     // From a start of its own, on the same branch: up to the errors of both solutions.
     PointOptions alone = point;
     alone.carried_state.reset();
     const PointResult own = solve_operating_point(scene, condition, alone);
     ASSERT_EQ(own.contact_loss, each.result->contact_loss) << speed;
+    ASSERT_EQ(own.sensitivities->parameters.size(), parameters.size());
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       for (int f = 0; f < kOrbitFigures; ++f) {
         const auto figure = static_cast<OrbitFigure>(f);
