@@ -573,7 +573,7 @@ TEST(HardPoints, RandomGearSetsAndFluids) {
   std::cout << "seed " << seed << '\n';
   RecordProperty("seed", std::to_string(seed));
   std::mt19937_64 random(seed);
-  const int count = full_run() ? 1000 : kShortRun ? 5 : 50;
+  const int count = full_run() ? 1000 : kShortRun ? 5 : 25;
   int right = 0, above = 0, wrong = 0, vanished = 0, marched = 0, picard_error = 0, refused = 0,
       untold = 0;
   for (int i = 0; i < count; ++i) {

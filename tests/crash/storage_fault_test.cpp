@@ -315,10 +315,10 @@ class StorageFault : public testing::Test {
 
   void fail_every(FaultyVfs::Operation operation, const std::string& name) {
     // There is one session for each operation. A session has hundreds of writes and reads: CI fails
-    // every third of them, under AddressSanitizer every sixth; the full run fails each.
+    // every third of them, under AddressSanitizer every twelfth; the full run fails each.
     const bool many =
         operation == FaultyVfs::Operation::kWrite || operation == FaultyVfs::Operation::kRead;
-    const int stride = !many || full_run() ? 1 : kUnderAddressSanitizer ? 6 : 3;
+    const int stride = !many || full_run() ? 1 : kUnderAddressSanitizer ? 12 : 3;
     for (const bool lasting : {false, true}) {
       int met = 0;
       for (int n = lasting ? 1 + stride / 2 : 1; !HasFailure(); n += stride, ++met) {
