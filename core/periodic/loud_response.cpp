@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "core/driveline/linear_modes.h"
@@ -15,6 +17,9 @@
 namespace tribodyn {
 namespace {
 
+// Over its resonance, the lowest speed to which a loud response is followed. (Those of the random
+// scenes in tests/support/random_place.h end above 0.6.)
+constexpr double kLowest = 0.55;
 constexpr double kProbedCoefficient = 0.05;  // lubricated flanks are between 0.02 and 0.1
 constexpr double kProbeTolerance = 1e-3;
 // About multipliers under frozen friction: see find_orbit.cpp.
@@ -38,17 +43,14 @@ double mesh_mode(const GearPairSystem& system) {
   return nearest;
 }
 
-/// The resonances whose loud responses may reach a speed.
-std::vector<Resonance> resonances_for(const PeriodicProblem& problem) {
-  // Over its resonance. Of the random scenes in tests/support/random_place.h no loud response
-  // reaches below 0.6 of a primary resonance or of one by ripple.
-  constexpr double kLowest = 0.55, kHighest = 1.06;
+/// The resonances whose loud responses may reach a speed. `natural`: of the mesh [rad/s].
+std::vector<Resonance> resonances_for(const PeriodicProblem& problem, double natural) {
+  constexpr double kHighest = 1.06;  // over the resonance
   // Of the mean force, magnified: at 1 a linear response parts the flanks.
   constexpr double kParts = 0.7;
   // Of the critical damping: at 4 a vibration by ripple sustains itself (linear_response.h).
   constexpr double kRippleOverDamping = 3;
   const GearPairSystem& system = problem.system;
-  const double natural = mesh_mode(system);
   const double damping_ratio =
       0.5 * system.dynamics().mesh_damping * natural / system.mesh().mean_mesh_stiffness();
   const auto& orders = system.mesh().orders();
@@ -87,21 +89,30 @@ class LoudBranch {
         &problem_.grids.with_steps(StepSequence(problem.system.mesh().intervals(), least).first());
   }
 
-  std::optional<CarriedState> from(const Resonance& resonance) {
-    if (grid_ == nullptr || !start(resonance)) return std::nullopt;
-    constexpr double kLongestStep = 0.04, kShortestStep = 0.005;  // of the speed
-    double step = kLongestStep;
-    while (problem_.mean_pinion_speed > wanted_) {
-      if (step < kShortestStep) return std::nullopt;
+  /// Continues from a resonance down to the speed wanted. Returns false if the branch does not
+  /// reach it; speed() is then the last one on it, or infinite if there is no branch.
+  bool follow_from(const Resonance& resonance) {
+    constexpr double kLongestStep = 0.04, kShortestStep = 0.0025;  // of the speed
+    if (grid_ == nullptr || !start(resonance)) {
+      problem_.mean_pinion_speed = std::numeric_limits<double>::infinity();
+      return false;
+    }
+    for (double step = kLongestStep; problem_.mean_pinion_speed > wanted_;) {
+      if (step < kShortestStep) return false;
       const double next = std::max(wanted_, (1 - step) * problem_.mean_pinion_speed);
       step = continue_to(next) ? std::min(1.5 * step, kLongestStep) : step / 2;
     }
-    return CarriedState{problem_.system.to_section(orbit_.state.data()),
-                        wanted_,
-                        orbit_.torques.pinion,
-                        orbit_.torques.wheel,
-                        orbit_.period,
-                        true};
+    return true;
+  }
+  double speed() const { return problem_.mean_pinion_speed; }
+
+  CarriedState state() const {
+    return {problem_.system.to_section(orbit_.state.data()),
+            problem_.mean_pinion_speed,
+            orbit_.torques.pinion,
+            orbit_.torques.wheel,
+            orbit_.period,
+            true};
   }
 
  private:
@@ -109,12 +120,14 @@ class LoudBranch {
   bool start(const Resonance& resonance) {
     const GearPairSystem& system = problem_.system;
     problem_.mean_pinion_speed = std::max(wanted_, resonance.speed);
-    for (const int cycles : {24, 96}) {
+    // From some states the transient leads to the quiet response.
+    constexpr std::pair<int, double> kTries[] = {{24, 1}, {24, 2}, {24, 4}, {96, 1}};
+    for (const auto& [cycles, pressed] : kTries) {
       orbit_ = {};
       orbit_.torques = problem_.torques;
       orbit_.period = resonance.period;
       orbit_.state = static_start(system, orbit_.torques, problem_.mean_pinion_speed, 0, 0,
-                                  system.dynamics().half_backlash);
+                                  pressed * system.dynamics().half_backlash);
       options_.first_cycles = cycles;
       const bool good = solver_.solve_without_friction(*grid_, options_, orbit_);
       options_.first_cycles = 0;
@@ -163,13 +176,16 @@ class LoudBranch {
 
 std::optional<CarriedState> find_loud_response(const PeriodicProblem& problem) {
   if (problem.torques.pinion == 0) return std::nullopt;
-  for (const Resonance& resonance : resonances_for(problem)) {
-    if (auto found = LoudBranch(problem).from(resonance)) return found;
+  for (const Resonance& resonance : resonances_for(problem, mesh_mode(problem.system))) {
+    LoudBranch branch(problem);
+    if (branch.follow_from(resonance)) return branch.state();
   }
   return std::nullopt;
 }
 
 bool has_quiet_response(const PeriodicProblem& problem) {
+  // Of the mean force: the last percent of the quiet branch parts the flanks a little.
+  constexpr double kLittleTensionOfProbe = 0.05;
   if (problem.torques.pinion == 0) return false;
   PeriodicProblem loose = problem;
   loose.tolerance = kProbeTolerance;
@@ -184,31 +200,61 @@ bool has_quiet_response(const PeriodicProblem& problem) {
   const MeshGrid& grid =
       problem.grids.with_steps(StepSequence(problem.system.mesh().intervals(), 24).first());
   return solver.solve_without_friction(grid, options, orbit) &&
-         solver.solve(grid, options, orbit) && orbit.least_pressing_force >= 0 &&
+         solver.solve(grid, options, orbit) &&
+         orbit.least_pressing_force > -kLittleTensionOfProbe &&
          orbit.jacobian->largest_multiplier() < 1 + kDoubtOfMultiplier;
 }
 
 namespace {
 
-/// The value at a problem's speed and load: known, or computed and kept.
-template <class Map, class Find>
-auto find_or_keep(Map& known, std::size_t most, const PeriodicProblem& problem, Find&& find) {
-  const typename Map::key_type key{problem.mean_pinion_speed, problem.torques.pinion,
-                                   problem.torques.wheel,
-                                   static_cast<double>(problem.solve_wheel_torque)};
-  if (const auto at = known.find(key); at != known.end()) return at->second;
-  if (known.size() >= most) known.clear();
-  return known[key] = find(problem);
+/// The next torque on a lattice that is even in the logarithm: where a branch ends moves little
+/// with the torque.
+double on_lattice(double torque) {
+  constexpr double kRatio = 1.15;
+  const double level = std::round(std::log(std::abs(torque)) / std::log(kRatio));
+  return std::copysign(std::pow(kRatio, level), torque);
 }
 
 }  // namespace
 
 std::optional<CarriedState> OtherResponses::loud(const PeriodicProblem& problem) {
-  return find_or_keep(loud_, kMostKept, problem, find_loud_response);
+  const StateKey key{problem.mean_pinion_speed, problem.torques.pinion, problem.torques.wheel,
+                     static_cast<double>(problem.solve_wheel_torque)};
+  if (const auto at = loud_.find(key); at != loud_.end()) return at->second;
+  if (loud_.size() >= kMostKept) loud_.clear();
+  return loud_[key] = find_loud_response(problem);
 }
 
-bool OtherResponses::has_quiet(const PeriodicProblem& problem) {
-  return find_or_keep(quiet_, kMostKept, problem, has_quiet_response);
+bool OtherResponses::may_be_loud(const PeriodicProblem& problem) {
+  if (problem.torques.pinion == 0) return false;
+  if (natural_ == 0) natural_ = mesh_mode(problem.system);
+  PeriodicProblem near = problem;
+  const double ratio = on_lattice(problem.torques.pinion) / problem.torques.pinion;
+  near.torques.pinion *= ratio;
+  near.torques.wheel *= ratio;
+  for (const Resonance& resonance : resonances_for(near, natural_)) {
+    if (problem.mean_pinion_speed > resonance.speed) continue;
+    const BranchKey key{near.torques.pinion, static_cast<double>(near.solve_wheel_torque),
+                        resonance.speed, static_cast<double>(resonance.period)};
+    auto at = lowest_.find(key);
+    if (at == lowest_.end()) {
+      if (lowest_.size() >= kMostKept) lowest_.clear();
+      near.mean_pinion_speed = kLowest * resonance.speed;
+      LoudBranch branch(near);
+      branch.follow_from(resonance);
+      at = lowest_.emplace(key, branch.speed()).first;
+    }
+    if (problem.mean_pinion_speed >= at->second) return true;
+  }
+  return false;
+}
+
+bool OtherResponses::may_be_quiet(const PeriodicProblem& problem) {
+  const StateKey key{problem.mean_pinion_speed, problem.torques.pinion, problem.torques.wheel,
+                     static_cast<double>(problem.solve_wheel_torque)};
+  if (const auto at = quiet_.find(key); at != quiet_.end()) return at->second;
+  if (quiet_.size() >= kMostKept) quiet_.clear();
+  return quiet_[key] = has_quiet_response(problem);
 }
 
 }  // namespace tribodyn

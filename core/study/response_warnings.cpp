@@ -3,7 +3,6 @@
 #include <string>
 
 #include "core/number_text.h"
-#include "core/study/point_start.h"
 
 namespace tribodyn {
 
@@ -25,17 +24,15 @@ std::vector<RangeWarning> orbit_warnings(const PeriodicOrbit& orbit) {
 
 std::optional<RangeWarning> coexistence_warning(const PointProblem& problem, bool contact_loss) {
   if (!problem.options.warn_of_coexisting_response) return std::nullopt;
+  OtherResponses& others = problem.gear_set.other_responses();
+  const PeriodicProblem periodic = problem.periodic(problem.options.tolerance);
   std::string sentence;
   if (contact_loss) {
-    OtherResponses& others = problem.gear_set.other_responses();
-    if (!others.has_quiet(problem.periodic(problem.options.tolerance))) return std::nullopt;
+    if (!others.may_be_quiet(periodic)) return std::nullopt;
     sentence = "a response without contact loss exists here too, or nearly: start = QUASI_STATIC";
   } else {
-    const auto loud = loud_response(problem);
-    if (!loud) return std::nullopt;
-    sentence = "a response with contact loss that repeats after " + std::to_string(loud->period) +
-               (loud->period == 1 ? " mesh cycle" : " mesh cycles") +
-               " exists here too: start = LARGE_VIBRATION";
+    if (!others.may_be_loud(periodic)) return std::nullopt;
+    sentence = "a response with contact loss exists here too, or nearly: start = LARGE_VIBRATION";
   }
   return RangeWarning{"RESPONSES_COEXIST",
                       sentence + " leads there (found under a friction coefficient of 0.05)"};
