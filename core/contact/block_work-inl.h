@@ -39,10 +39,13 @@ struct alignas(64) Work {
   // The iteration: T - base and the s where tau meets tau_L; eq 23 at that T; tau at that s.
   Lanes start, rise, cut, pending;
   Lanes law_base, law_base_slope, factor, factor_slope;
-  Lanes clipped, e_cut, stress, ratio, ratio_slope;
-  Lanes e_growth;                                // of RoelandsGrowth: e^(Z s) there
-  Lanes growth_by_temperature, growth_by_depth;  // of LawGrowth: slopes of ln tau there
-  Lanes mean, change, cut_change;
+  Lanes clipped, e_cut, stress, log_slope, depth_slope;  // slopes of ln tau by T and by s
+  Lanes ratio, ratio_slope;
+  // Of contacts limited at the edge: c p and s where tau leaves tau_L, and tau, its slopes in T and
+  // c p and R there.
+  Lanes rim, rim_depth, rim_stress, rim_log_slope, rim_steepness, rim_ratio, rim_ratio_slope;
+  Lanes all_limited;  // 1 or 0: tau is above tau_L everywhere
+  Lanes mean, change, cut_change, rim_change;
 };
 
 /// First lanes of the packs of a block that are still worked on.

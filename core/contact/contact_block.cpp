@@ -34,22 +34,30 @@ HWY_INLINE void certify(const Tables& t, ContactBlockResults& block, const Work&
   const Mask whole = scaled < t.maximum_scaled_pressure;
   Pack share = 0, centre = 0;
   if (t.limited) {
-    // One place at most where stress and limit meet, and not within rounding of none.
+    // One place at most where stress and limit meet behind a limited rim, and not within rounding
+    // of none; the last change of T must not make or undo it. (The slope at the cut is that at the
+    // end where it counts: near one another.)
     const Pack excess_end = excess_at_end<Growth>(t, work, i);
     const Pack excess_edge = load(work.law_base + i) - t.log_limit_at_edge;
-    const Mask clipped = excess_end > 0, all_limited = excess_edge > 0;
+    const Mask clipped = excess_end > 0, all_limited = load(work.all_limited + i) > 0;
     constexpr double kRounding = kDigits == Digits::kFull ? 1e-8 : 1e-6;
-    certified = certified & (size(excess_edge) > kRounding) & (size(excess_end) > kRounding);
-    const Mask rising = factor >= t.monotone_factor;
-    certified = certified & (t.falls_then_rises ? rising | ~all_limited : rising);
+    const Pack excess_then = fused(load(work.log_slope + i), next_rise - rise, excess_end);
+    certified = certified & (size(excess_edge) > kRounding) & (size(excess_end) > kRounding) &
+                (excess_end * excess_then > 0);
+    certified = certified & (factor >= t.convex_factor);
     const Mask touched = clipped | all_limited;
     const Pack end = load(work.end + i), cut_change = load(work.cut_change + i);
     const Pack cut = load(work.cut + i) + cut_change;
-    const Mask inside = (cut > 1e-2) & (cut <= end);
-    certified = certified & (whole | touched) & (inside | all_limited | ~clipped);
     const Pack q = fused(load(work.e_cut + i), fused(cut_change, fused(cut_change, 0.5, 1), 1), -1);
-    const Pack part = least(q * load(work.per_scaled + i), 1);
-    share = select(all_limited, 1, where(clipped, (1 - part) * (1 + part)));
+    const Pack per_scaled = load(work.per_scaled + i), part = least(q * per_scaled, 1);
+    Pack rim = 0;
+    if (has_limited_rim(t, work, i)) {
+      const Pack x = load(work.rim + i) + load(work.rim_change + i);
+      rim = where((excess_edge > 0) & ~all_limited, least(x * per_scaled, 1));
+    }
+    const Mask inside = (cut > 1e-2) & (cut <= end) & (rim < part);
+    certified = certified & (whole | touched) & (inside | all_limited | ~clipped);
+    share = select(all_limited, 1, fused(rim, rim, where(clipped, (1 - part) * (1 + part))));
     centre = as_number(touched);
     // One equilibrium: the rise cannot leave the temperatures for which that is proved.
     const Pack most = fused(load(work.gain + i), load(work.all_limit + i), base);

@@ -50,10 +50,10 @@ struct ContactBlockTables : ContactConstants<double> {
   bool inlet_shear_heating = false;
   bool isothermal = false, limited = false;
 
-  double log_limit_at_edge = 0;        ///< ln tau_L0
+  double log_limit_at_edge = 0;        ///< ln tau_L0, which may be -infinity
   double limit_slope = 0;              ///< gamma_L/c [Pa]
-  double monotone_factor = 0;          ///< from this L on, ln(tau/tau_L) rises inwards
-  bool falls_then_rises = false;       ///< ln(tau/tau_L) has no maximum inside at any L > 0
+  double convex_factor = 0;            ///< from this L on, tau is convex in p
+  bool limited_rim = false;            ///< tau may be above tau_L at the edge and below inside
   double unique_root_temperature = 0;  ///< below it ln tau falls with T at every pressure
   double maximum_temperature = 0;      ///< of the table [K]
   double maximum_log_pressure = 0;     ///< greatest ln(1 + c p) of the table

@@ -19,17 +19,6 @@ bool equal(const AsPublished& a, const AsPublished& b) {
   return a.eq20_semi_major == b.eq20_semi_major && a.eq22_inverted_ratio == b.eq22_inverted_ratio;
 }
 
-/// Least of u^(Z-1) (tau_0 c + gamma (u - 1)) over u >= 1: what eq 31's steepness is up against.
-double least_steepness(double index, double tau_zero_c, double gamma) {
-  const auto at = [&](double u) { return std::pow(u, index - 1) * (tau_zero_c + gamma * (u - 1)); };
-  double least = at(1);
-  if (index < 1 && gamma > 0) {
-    const double turn = (1 - index) * (tau_zero_c - gamma) / (index * gamma);
-    if (turn > 1) least = std::min(least, at(turn));
-  }
-  return gamma > 0 || index >= 1 ? least : 0;
-}
-
 /// Below it d ln tau/dT <= -(1 - ab) A1/(T - T0)^2 + ab/T < 0 at every pressure, a b = alpha_HN
 /// beta_HN; infinite for a Newtonian fluid.
 double unique_root_temperature(const Lubricant& oil, bool newtonian) {
@@ -43,40 +32,31 @@ double unique_root_temperature(const Lubricant& oil, bool newtonian) {
 }
 
 /// Returns whether the vector code can certify contacts under the growth of viscosity with pressure
-/// of a law other than eq 31: the growth falls with temperature over the whole table, and at every
-/// temperature ln(tau/tau_L) rises inwards, or falls and then rises. The first is proved, the
-/// second is checked at 8 x 48 temperatures and depths. Sets monotone_factor and falls_then_rises.
+/// of a law other than eq 31: the growth falls with temperature over the whole table, which is
+/// proved, and tau is convex in p: d(1/g)/dp <= 1 with g = d ln tau/dp, which is checked at 8 x 48
+/// temperatures and depths. Sets limited_rim.
 bool can_certify_growth(ContactBlockTables& t, double tau_zero, double gamma) {
   const GrowthLaw<double>& law = t.shear.growth;
   const double c = laws::kRoelandsPressureCoefficient;
   if (!laws::pressure_growth_falls(law, t.inlet_temperature, t.maximum_scaled_pressure / c)) {
     return false;
   }
-  t.monotone_factor = 0;
-  t.falls_then_rises = true;
   if (!t.limited || gamma == 0) return true;
   constexpr int kTemperatures = 8, kDepths = 48;
   using Number = laws::Dual<double, 1>;
-  double colder_factor = kInfinity;
   for (int i = 0; i < kTemperatures; ++i) {
     const double temperature = t.inlet_temperature + (t.maximum_temperature - t.inlet_temperature) *
                                                          i / (kTemperatures - 1);
-    bool rises = false, fell = false;
+    double before = kInfinity;
     for (int j = 0; j <= kDepths; ++j) {
       const Number pressure =
           Number::variable(std::expm1(t.maximum_log_pressure * j / kDepths) / c, 0);
       const double steepness = laws::pressure_growth(law, Number(temperature), pressure).slope[0];
-      const bool rises_here = steepness * (tau_zero + gamma * pressure.value) > gamma;
-      if (rises && !rises_here) return false;
-      rises = rises_here;
-      fell = fell || !rises_here;
+      if (j == 0) t.limited_rim = t.limited_rim || steepness * tau_zero < gamma;
+      const double flatness = 1 / steepness - pressure.value;
+      if (!(steepness > 0 && flatness <= before)) return false;
+      before = flatness;
     }
-    if (fell && t.monotone_factor == 0) t.monotone_factor = colder_factor;
-    const Lubricant& oil = t.shear.lubricant;
-    colder_factor = laws::roelands_factor(
-        laws::log_vogel_viscosity(t.shear.log_vogel_prefactor, oil.vogel_temperature_coefficient,
-                                  oil.vogel_reference_temperature, temperature)
-            .value);
   }
   return true;
 }
@@ -157,12 +137,6 @@ FlankContactBatch::FlankContactBatch(const FlankContactModel& model, Instruction
     t.log_limit_at_edge = std::log(tau_zero);
     t.limit_slope = gamma / laws::kRoelandsPressureCoefficient;
   }
-  if (t.limited && roelands) {
-    const double tau_zero_c = tau_zero * laws::kRoelandsPressureCoefficient;
-    t.monotone_factor = gamma / (t.shear.index * least_steepness(t.shear.index, tau_zero_c, gamma));
-    if (gamma == 0) t.monotone_factor = 0;
-    t.falls_then_rises = t.shear.index >= 1 || tau_zero_c <= gamma;
-  }
 
   double end_of_density = kInfinity;
   if (!t.shear.newtonian && oil.density_temperature_slope < 0) {
@@ -176,11 +150,17 @@ FlankContactBatch::FlankContactBatch(const FlankContactModel& model, Instruction
     return laws::roelands_factor(log_ambient_viscosity(oil, temperature));
   };
   t.maximum_temperature = std::min(t.inlet_temperature + 200, 0.9 * end_of_density);
+  if (t.limited && roelands && gamma > 0) {
+    // d2 tau/dp2 = tau c^2 L Z u^(Z-2) (L Z u^Z + Z - 1), u = 1 + c p >= 1; d tau/dp is least,
+    // where tau exceeds tau_L0 at the edge, at tau_L0 and the least L.
+    t.convex_factor = (1 - t.shear.index) / t.shear.index;
+    t.limited_rim = tau_zero * t.shear.index * factor_at(t.maximum_temperature) < t.limit_slope;
+  }
   const AsPublished& p = options.as_published;
-  const bool one_switch_at_most = !t.limited || (tau_zero > 0 && gamma >= 0);
+  const bool limit_rises = !t.limited || (tau_zero >= 0 && gamma >= 0 && tau_zero + gamma > 0);
   const bool proved = one_equilibrium || t.limited;
   t.can_certify = !p.eq17_atan && !p.eq31_32_logarithm && !p.eq43_44_polynomials &&
-                  options.hertz_load == HertzLoad::kFilmLoad && one_switch_at_most && proved &&
+                  options.hertz_load == HertzLoad::kFilmLoad && limit_rises && proved &&
                   (t.shear.newtonian || oil.relaxation_time > 0) &&
                   t.maximum_temperature > t.inlet_temperature + 1 && std::isfinite(t.log_film) &&
                   std::isnormal(std::exp(log_ambient_viscosity(oil, t.inlet_temperature))) &&

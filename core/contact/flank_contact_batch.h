@@ -116,19 +116,21 @@ class DifferentiatedContacts {
 /// - The mean of eq 23 needs no quadrature. With L = ln eta_0 + 9.67 and c of eq 31,
 ///     int_0^p tau p' dp' = tau(p) p^2/2 R(L, ln(1 + c p)),
 ///   where R depends on the fluid's Z alone and is a polynomial in two variables, made once.
-/// - The place where tau meets tau_L and the temperature are found by one iteration.
+/// - The places where tau meets tau_L and the temperature are found by one iteration. tau is convex
+///   in p and tau_L a line, so that there are two at most: the end of a rim on tau_L, which
+///   tau_L0 = 0 always has, and one towards the centre.
 ///
 /// Handed to the scalar kernel, one by one and then equal to it to the last bit:
 /// - models with the misprints of eqs 17, 31, 32, 43 and 44, with the ellipse from the total load,
-///   with tau_L0 = 0 or a density that rises with temperature; without limiting stress, fluids that
-///   may have several thermal equilibria;
+///   with a limiting stress of zero (tau_L0 = gamma_L = 0) or a density that rises with
+///   temperature; without limiting stress, fluids that may have several thermal equilibria;
 /// - contacts without load, sliding or entrainment, or with any of them, or a radius, far beyond
 ///   machines (1e-10 N, 1e-9 m/s, 1 um); refused ones;
 /// - an unlimited stress above 3 GPa (less where the viscosity rises by more than e^32); T_c more
 ///   than 200 K above the inlet; film ratios between 36.5 and 38.75;
-/// - a stress that is limited at the edge but not everywhere, or within 1e-8 of the limit at the
-///   edge or the centre (1e-6 with half of the digits); a rise that might lead to several
-///   equilibria.
+/// - a stress that is within 1e-8 of the limit at the edge or the centre (1e-6 with half of the
+///   digits), or that falls to within 1 % of the limit behind a limited rim and rises again; a rise
+///   of temperature that might lead to several equilibria.
 ///
 /// A contact's result depends on the model, on its own geometry, conditions and start, and on the
 /// instruction set, and on nothing else: the same bits alone or in company, in any place of a batch

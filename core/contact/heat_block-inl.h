@@ -9,6 +9,7 @@
 
 #include <hwy/highway.h>
 
+#include "core/contact/limited_rim-inl.h"
 #include "core/contact/shear_block-inl.h"
 #include "core/laws/heat-inl.h"
 
@@ -69,36 +70,88 @@ HWY_INLINE Fraction alike(Pack x, Pack y) {
 ///     second order. H' grows like 1 + a (T - base) with the steepness a = -d ln tau_bar/dT, whence
 ///     H'' = H' - 1.
 ///  3. s changes by d and by the shift of s* with T.
+///  4. A limited rim ends at x* = c p, where tau first meets tau_L: x is found as s* is, by the
+///  step
+///     of limited_rim-inl.h.
 /// The logarithms are rational functions with the same root and slope there. (J. F. Traub,
 /// Iterative Methods for the Solution of Equations, 1964, for Halley's method and its kin.)
 struct Step {
-  Pack change;      // of y
-  Pack cut_change;  // of s
-  Pack mean;        // tau_bar
-  Pack per_slope;   // 1/e' where the cut moves
+  Pack change;       // of y
+  Pack cut_change;   // of s
+  Pack mean;         // tau_bar
+  Pack per_slope;    // 1/e' where the cut moves
+  Pack rim_change;   // of x
+  Pack rim_unsure;   // a size of that, and 1 where all_limited is not proved yet
+  Mask all_limited;  // tau > tau_L everywhere
 };
 
+/// The part of a limited rim in a step.
+struct Rim {
+  Mask ends;              // tau_L holds up to x*, not up to the centre
+  Pack mean, mean_slope;  // what that changes in tau_bar and d tau_bar/dT
+  Pack change;            // of x at this T
+  Pack change_by_rise;    // dx*/dT
+  Pack unsure_by_change;  // Step::rim_unsure by rim_change
+  Mask unproved;          // no x* was found, but that there is none is not proved
+};
+HWY_INLINE Rim rim_step(const Tables& t, const Work& work, int i) {
+  const double edge_limit = t.shear.lubricant.limiting_shear_stress_at_zero_pressure;
+  const Pack scaled = load(work.scaled_pressure + i), per_scaled = load(work.per_scaled + i);
+  const Pack x = load(work.rim + i), stress = load(work.rim_stress + i);
+  const Pack limit = limiting_shear_stress(edge_limit, t.limit_slope, x);
+  const LimitExcess h(stress, load(work.rim_steepness + i), limit, t.limit_slope);
+  const RimStep step(h);
+  const Mask limited = load(work.law_base + i) > t.log_limit_at_edge;
+  const Mask clipped = load(work.clipped + i) > 0;
+  const Mask met = step.meets & (x + step.change <= rim_end(t, work, i));
+  Rim out;
+  out.ends = limited & (met | ~clipped);
+  const Pack part = x * per_scaled, part2 = part * part;
+  const Pack moved = part * (step.change * per_scaled);
+  const Pack ratio = load(work.rim_ratio + i), log_slope = load(work.rim_log_slope + i);
+  const Pack on_limit = part2 * mean_limiting_shear_stress(edge_limit, t.limit_slope, x);
+  out.mean = where(out.ends, on_limit - stress * part2 * ratio - h.value * moved);
+  const Pack slope = fused(
+      part2, fused(ratio, log_slope, load(work.rim_ratio_slope + i) * load(work.factor_slope + i)),
+      2 * moved * log_slope);
+  out.mean_slope = where(out.ends, -(stress * slope));
+  out.change = where(limited, step.change);
+  const Pack per_fall = 1 / greatest(step.fall, 0.05 * t.limit_slope);
+  out.change_by_rise = where(out.ends, stress * log_slope * per_fall);
+  out.unsure_by_change = where(out.ends, fused(h.curvature, per_fall, per_scaled));
+  // h is above its tangent.
+  const Pack drop = greatest(h.slope * x, h.slope * (x - scaled));
+  out.unproved = limited & ~out.ends & ~(h.value - drop > 1e-2 * limit);
+  return out;
+}
+
 /// kKept: the stress of the step is a result, not only a way to one.
-template <PressureGrowth Growth, bool kKept>
+template <bool kKept>
 HWY_INLINE Step halley_step(const Tables& t, const Work& work, int i) {
   const Pack scaled = load(work.scaled_pressure + i), per_scaled = load(work.per_scaled + i);
   const Pack stress = load(work.stress + i), ratio = load(work.ratio + i);
   const Pack factor_slope = load(work.factor_slope + i), rise = load(work.rise + i);
-  const Pack e_cut = load(work.e_cut + i);
+  const Pack e_cut = load(work.e_cut + i), cut_room = load(work.end + i) - load(work.cut + i);
   Mask clipped = nowhere(), all_limited = nowhere();
   if (t.limited) {
     clipped = load(work.clipped + i) > 0;
     all_limited = load(work.law_base + i) > t.log_limit_at_edge;
+  }
+  Rim rim;
+  const bool has_rim = has_limited_rim(t, work, i);
+  if (has_rim) {
+    rim = rim_step(t, work, i);
+    all_limited = all_limited & ~rim.ends;
   }
   // Where the stress is not cut off, q is c p_max: e_cut - 1 has lost digits of small ones.
   Pack q = e_cut - 1;
   if (kKept) q = least(select(clipped, q, scaled), scaled);
   const Pack part = q * per_scaled, part2 = part * part;
   const Pack weighted = stress * part2;
-  // d ln tau(s)/dT.
-  const Pack log_slope = Growth::slope_by_temperature(work, i);
+  const Pack log_slope = load(work.log_slope + i);
   Step step;
-  step.change = step.cut_change = 0;
+  step.change = step.cut_change = step.rim_change = step.rim_unsure = 0;
+  step.all_limited = all_limited;
   step.mean = weighted * ratio;
   Pack mean_slope = weighted * fused(ratio, log_slope, load(work.ratio_slope + i) * factor_slope);
   Pack cut_steepness = 0;  // -1/e' where the cut moves
@@ -108,29 +161,43 @@ HWY_INLINE Step halley_step(const Tables& t, const Work& work, int i) {
     const Pack on_limit = fused((t.limit_slope * 2 / 3) * scaled, less_product(part2, part, 1),
                                 rim_limit * (1 - part2));
     const Fraction e = alike(stress, limit);
-    const Pack e_slope_limit =
-        greatest(less_product(t.limit_slope, e_cut, Growth::slope_by_depth(t, work, i) * limit),
-                 0.05 * limit);
-    const Pack inverse = where(clipped & ~all_limited, -limit / (e.under * e_slope_limit));
-    step.cut_change = e.over * inverse;
+    const Pack e_slope = less_product(t.limit_slope, e_cut, load(work.depth_slope + i) * limit);
+    const Pack e_slope_limit = greatest(e_slope, 0.05 * limit);
+    Mask moves = clipped & ~all_limited;
+    if (has_rim) {  // in the rim the cut returns to the end
+      const Mask strays = moves & rim.ends & (e_slope <= 0);
+      step.cut_change = where(strays, cut_room);
+      moves = moves & ~strays;
+      step.mean = step.mean + rim.mean;
+      mean_slope = mean_slope + rim.mean_slope;
+      step.rim_change = rim.change;
+    }
+    const Pack inverse = where(moves, -limit / (e.under * e_slope_limit));
+    const Pack cut_change = e.over * inverse;
+    step.cut_change = step.cut_change + cut_change;
     cut_steepness = e.under * inverse;
     const Pack rate = part * (e_cut * per_scaled);          // (d tau_bar/ds)/2 per excess stress
     const Pack mixed = (rate + rate) * stress * log_slope;  // d2 tau_bar/(ds dT)
-    step.mean = fused(rate * (stress - limit), step.cut_change,
+    step.mean = fused(rate * (stress - limit), cut_change,
                       step.mean + (kKept ? where(clipped, on_limit) : on_limit));
-    mean_slope = fused(mixed, step.cut_change, mean_slope);
+    mean_slope = fused(mixed, cut_change, mean_slope);
     step.mean = select(all_limited, load(work.all_limit + i), step.mean);
     mean_slope = where(~all_limited, mean_slope);
   }
   step.per_slope = -cut_steepness;
-  if (t.isothermal) return step;
-  const Fraction h = alike(rise, load(work.gain + i) * step.mean);
-  const Pack less = least(0.5 * step.mean, mean_slope * rise);  // tau_bar (1 - H')
-  const Pack slope = step.mean - less;
-  const Pack quotient = 1 / (h.under * slope * step.mean);
-  const Pack newton = clamped(-(h.over * step.mean) * (step.mean * quotient), -2, 2);
-  step.change = newton * fused(newton, 0.5 * less * (h.under * step.mean) * quotient, 1);
-  step.cut_change = fused(log_slope * rise * step.change, cut_steepness, step.cut_change);
+  if (!t.isothermal) {
+    const Fraction h = alike(rise, load(work.gain + i) * step.mean);
+    const Pack less = least(0.5 * step.mean, mean_slope * rise);  // tau_bar (1 - H')
+    const Pack slope = step.mean - less;
+    const Pack quotient = 1 / (h.under * slope * step.mean);
+    const Pack newton = clamped(-(h.over * step.mean) * (step.mean * quotient), -2, 2);
+    step.change = newton * fused(newton, 0.5 * less * (h.under * step.mean) * quotient, 1);
+    step.cut_change = fused(log_slope * rise * step.change, cut_steepness, step.cut_change);
+  }
+  if (has_rim) {
+    step.rim_change = fused(rim.change_by_rise * rise, step.change, step.rim_change);
+    step.rim_unsure = fused(size(step.rim_change), rim.unsure_by_change, as_number(rim.unproved));
+  }
   return step;
 }
 
@@ -194,6 +261,17 @@ HWY_INLINE void start(const Tables& t, Work& work, int i) {
   store(least(select(warm, given, rise), room_of(t, work, i)), work.rise + i);
 }
 
+/// The first x at which tau = tau_L, by the step from the edge.
+template <PressureGrowth Growth>
+HWY_INLINE void start_rim(const Tables& t, Work& work, int i) {
+  constexpr Digits kHalf = Digits::kHalf;
+  const StressAtDepth at = Growth::template at<kHalf>(t, 0, work, i);
+  const Pack stress = exponential<kHalf>(clamped(at.log_value, -600, 100));
+  const double limit = t.shear.lubricant.limiting_shear_stress_at_zero_pressure;
+  const RimStep step(LimitExcess(stress, at.by_depth, limit, t.limit_slope));
+  store(clamped(step.change, 1e-9, rim_end(t, work, i)), work.rim + i);
+}
+
 /// ln tau = ln tau_L for s: with tau_L as at the end, then as at that s.
 template <PressureGrowth Growth>
 HWY_INLINE void start_cut(const Tables& t, Work& work, int i) {
@@ -211,18 +289,27 @@ HWY_INLINE void keep_step(const Step& step, Work& work, int i) {
   store(step.mean, work.mean + i);
   store(step.change, work.change + i);
   store(step.cut_change, work.cut_change + i);
+  store(step.rim_change, work.rim_change + i);
+  store(as_number(step.all_limited), work.all_limited + i);
+}
+
+HWY_INLINE void move_rim(const Tables& t, const Step& step, Mask stays, Work& work, int i) {
+  const Pack rim = load(work.rim + i);
+  const Pack next = clamped(rim + step.rim_change, 0.25 * rim, rim_end(t, work, i));
+  store(select(stays, rim, next), work.rim + i);
 }
 
 /// Takes a step with half of the digits. Returns false if none of the pack needs another. kKept:
 /// contacts whose step is small stay, and it is still to be added; otherwise they take it.
-template <PressureGrowth Growth, bool kKept>
+template <bool kKept>
 HWY_INLINE bool take_coarse_step(const Tables& t, Work& work, int i) {
   constexpr double kClose = kKept ? 5e-4 : 1.5e-3, kCutClose = kKept ? 1e-3 : 4e-3;
   const Pack rise = load(work.rise + i), cut = load(work.cut + i), end = load(work.end + i);
   Mask pending = load(work.pending + i) > 0;
-  const Step step = halley_step<Growth, kKept>(t, work, i);
+  const Step step = halley_step<kKept>(t, work, i);
   const Mask moves = pending;
-  pending = pending & ~((size(step.change) <= kClose) & (size(step.cut_change) <= kCutClose));
+  pending = pending & ~((size(step.change) <= kClose) & (size(step.cut_change) <= kCutClose) &
+                        (step.rim_unsure <= kCutClose));
   if (kKept) keep_step(step, work, i);
   const Mask stays = kKept ? ~pending : ~moves;
   if (!t.isothermal) {
@@ -233,22 +320,23 @@ HWY_INLINE bool take_coarse_step(const Tables& t, Work& work, int i) {
   }
   const Pack next = least(greatest(cut + step.cut_change, 0.25 * cut), end);
   store(select(stays, cut, next), work.cut + i);
+  if (t.limited_rim) move_rim(t, step, stays, work, i);
   store(as_number(pending), work.pending + i);
   return any(pending);
 }
 
 /// The same with all digits. Contacts whose step is small stay, and it is still to be added.
-template <PressureGrowth Growth>
 HWY_INLINE bool take_fine_step(const Tables& t, Work& work, int i) {
   // Newton's error is the square of the step, times a curvature that grows where stress and limit
   // meet at a small angle.
   constexpr double kSettled = 3e-6, kCutSettled = 3.6e-6;
   const Pack rise = load(work.rise + i), cut = load(work.cut + i);
-  const Step step = halley_step<Growth, true>(t, work, i);
+  const Step step = halley_step<true>(t, work, i);
   const Pack weight = fused(4, step.per_slope, 1);
   const Mask pending =
       (load(work.in_range + i) > 0) &
-      ~((size(step.change) <= kSettled) & (size(step.cut_change) * weight <= kCutSettled));
+      ~((size(step.change) <= kSettled) & (size(step.cut_change) * weight <= kCutSettled) &
+        (step.rim_unsure <= kCutSettled));
   keep_step(step, work, i);
   store(as_number(pending), work.pending + i);
   if (!any(pending)) return false;
@@ -256,6 +344,7 @@ HWY_INLINE bool take_fine_step(const Tables& t, Work& work, int i) {
   store(select(pending, clamped(next, 0.1 * rise, room_of(t, work, i)), rise), work.rise + i);
   const Pack next_cut = least(greatest(cut + step.cut_change, 0.25 * cut), load(work.end + i));
   store(select(pending, next_cut, cut), work.cut + i);
+  if (t.limited_rim) move_rim(t, step, ~pending, work, i);
   return true;
 }
 
@@ -266,9 +355,15 @@ HWY_NOINLINE void eval_all(const Tables& t, const ActiveLanes& active, bool firs
     for (const int i : active) start_cut<Growth>(t, work, i);
   }
   for (const int i : active) eval_stress<Growth, kDigits>(t, work, i);
-  const int* lane = active.begin();
-  for (; active.end() - lane >= 2; lane += 2) eval_ratio<kDigits, 2>(t, lane, work);
-  if (lane != active.end()) eval_ratio<kDigits, 1>(t, lane, work);
+  eval_ratios<kDigits>(t, active, work, work.cut, work.ratio, work.ratio_slope);
+  if (!t.limited_rim) return;
+  if (first) {
+    for (const int i : active) start_rim<Growth>(t, work, i);
+  }
+  ActiveLanes rims = active;
+  rims.keep([&](int i) HWY_ATTR { return has_limited_rim(t, work, i); });
+  for (const int i : rims) eval_rim<Growth, kDigits>(t, work, i);
+  eval_ratios<kDigits>(t, rims, work, work.rim_depth, work.rim_ratio, work.rim_ratio_slope);
 }
 
 /// kKept: solve_fine() does not follow.
@@ -278,7 +373,7 @@ HWY_NOINLINE void solve_coarse(const Tables& t, ActiveLanes active, Work& work) 
   constexpr int kMostSteps = 16;
   for (int n = 0; n < kMostSteps && !active.empty(); ++n) {
     eval_all<Growth, Digits::kHalf>(t, active, n == 0, work);
-    active.keep([&](int i) HWY_ATTR { return take_coarse_step<Growth, kKept>(t, work, i); });
+    active.keep([&](int i) HWY_ATTR { return take_coarse_step<kKept>(t, work, i); });
   }
 }
 
@@ -286,7 +381,7 @@ template <PressureGrowth Growth>
 HWY_NOINLINE void solve_fine(const Tables& t, ActiveLanes active, Work& work) {
   for (int n = 0; n < 4 && !active.empty(); ++n) {
     eval_all<Growth, Digits::kFull>(t, active, false, work);
-    active.keep([&](int i) HWY_ATTR { return take_fine_step<Growth>(t, work, i); });
+    active.keep([&](int i) HWY_ATTR { return take_fine_step(t, work, i); });
   }
 }
 

@@ -22,6 +22,11 @@ namespace tribodyn {
 namespace HWY_NAMESPACE {
 namespace {
 
+/// ln tau at a depth, and its slopes there.
+struct StressAtDepth {
+  Pack log_value, by_temperature, by_depth;
+};
+
 /// How ln tau grows with pressure under a pressure-viscosity law: a policy of the stages here, in
 /// heat_block-inl.h and in contact_block.cpp. Depth s = ln(1 + c p); the temperature is that of
 /// eval_rheology(), which leaves the part at p = 0 in law_base and law_base_slope.
@@ -31,10 +36,7 @@ concept PressureGrowth = requires(const Tables& t, Work& work, const Work& prepa
   // Leaves what stays while the temperature is sought.
   G::template prepare_end<Digits::kFull>(t, depth, work, i);
   { G::log_stress_at_end(t, prepared, i) } -> std::same_as<Pack>;
-  // ln tau at the cut; leaves what its two slopes consist of.
-  { G::template log_stress_at_cut<Digits::kFull>(t, depth, work, i) } -> std::same_as<Pack>;
-  { G::slope_by_temperature(prepared, i) } -> std::same_as<Pack>;
-  { G::slope_by_depth(t, prepared, i) } -> std::same_as<Pack>;
+  { G::template at<Digits::kFull>(t, depth, prepared, i) } -> std::same_as<StressAtDepth>;
   // The depth at which ln tau reaches a value, nearly, as a function of that value.
   { G::depth_function(t, prepared, i).of(log_stress) } -> std::same_as<Pack>;
 };
@@ -50,17 +52,12 @@ struct RoelandsGrowth {
                               load(work.end_growth + i));
   }
   template <Digits kDigits>
-  static HWY_INLINE Pack log_stress_at_cut(const Tables& t, Pack cut, Work& work, int i) {
-    const Pack e_growth = exponential<kDigits>(t.shear.index * cut);
-    store(e_growth, work.e_growth + i);
-    return log_under_pressure(load(work.law_base + i), load(work.factor + i), e_growth - 1);
-  }
-  static HWY_INLINE Pack slope_by_temperature(const Work& work, int i) {
-    return fused(load(work.factor_slope + i), load(work.e_growth + i) - 1,
-                 load(work.law_base_slope + i));
-  }
-  static HWY_INLINE Pack slope_by_depth(const Tables& t, const Work& work, int i) {
-    return load(work.factor + i) * t.shear.index * load(work.e_growth + i);
+  static HWY_INLINE StressAtDepth at(const Tables& t, Pack depth, const Work& work, int i) {
+    const Pack factor = load(work.factor + i);
+    const Pack e_growth = exponential<kDigits>(t.shear.index * depth);
+    return {log_under_pressure(load(work.law_base + i), factor, e_growth - 1),
+            fused(load(work.factor_slope + i), e_growth - 1, load(work.law_base_slope + i)),
+            factor * t.shear.index * e_growth};
   }
   struct DepthFunction {
     double per_index;
@@ -91,17 +88,10 @@ struct LawGrowth {
     return load(work.law_base + i) + growth(t, load(work.end + i), work, i).value;
   }
   template <Digits kDigits>
-  static HWY_INLINE Pack log_stress_at_cut(const Tables& t, Pack cut, Work& work, int i) {
-    const Number at = growth(t, cut, work, i);
-    store(at.slope[0], work.growth_by_temperature + i);
-    store(at.slope[1], work.growth_by_depth + i);
-    return load(work.law_base + i) + at.value;
-  }
-  static HWY_INLINE Pack slope_by_temperature(const Work& work, int i) {
-    return load(work.law_base_slope + i) + load(work.growth_by_temperature + i);
-  }
-  static HWY_INLINE Pack slope_by_depth(const Tables&, const Work& work, int i) {
-    return load(work.growth_by_depth + i);
+  static HWY_INLINE StressAtDepth at(const Tables& t, Pack depth, const Work& work, int i) {
+    const Number growth_there = growth(t, depth, work, i);
+    return {load(work.law_base + i) + growth_there.value,
+            load(work.law_base_slope + i) + growth_there.slope[0], growth_there.slope[1]};
   }
   /// By the chord to the end of the table and two steps of Newton's method.
   struct DepthFunction {
@@ -174,22 +164,46 @@ HWY_INLINE void eval_stress(const Tables& t, Work& work, int i) {
     store(cut, work.cut + i);
     store(as_number(clipped), work.clipped + i);
   }
-  const Pack log_value = Growth::template log_stress_at_cut<kDigits>(t, cut, work, i);
+  const StressAtDepth at = Growth::template at<kDigits>(t, cut, work, i);
+  store(at.by_temperature, work.log_slope + i);
+  store(at.by_depth, work.depth_slope + i);
   store(exponential<kDigits>(cut), work.e_cut + i);
-  store(exponential<kDigits>(clamped(log_value, -600, 100)), work.stress + i);
+  store(exponential<kDigits>(clamped(at.log_value, -600, 100)), work.stress + i);
+}
+
+/// Whether a stress of the pack is limited at the edge and may not be behind it.
+HWY_INLINE bool has_limited_rim(const Tables& t, const Work& work, int i) {
+  return t.limited_rim && any(load(work.law_base + i) > t.log_limit_at_edge);
+}
+
+/// c p up to which the end of a limited rim is sought: at the centre or at the table's end.
+HWY_INLINE Pack rim_end(const Tables& t, const Work& work, int i) {
+  return least(load(work.scaled_pressure + i), t.maximum_scaled_pressure);
+}
+
+/// The stress at the end of a limited rim.
+template <PressureGrowth Growth, Digits kDigits>
+HWY_INLINE void eval_rim(const Tables& t, Work& work, int i) {
+  const Pack u = load(work.rim + i) + 1, depth = logarithm<kDigits>(u);
+  const StressAtDepth at = Growth::template at<kDigits>(t, depth, work, i);
+  store(depth, work.rim_depth + i);
+  store(at.by_temperature, work.rim_log_slope + i);
+  store(at.by_depth / u, work.rim_steepness + i);
+  store(exponential<kDigits>(clamped(at.log_value, -600, 100)), work.rim_stress + i);
 }
 
 /// R and its slope in L, of kPacks packs, which begin at the given lanes. (For two packs each
 /// coefficient is loaded once, and their chains of dependent instructions overlap: a contact then
 /// takes 0.98 of the time with AVX2.)
 template <Digits kDigits, int kPacks>
-HWY_INLINE void eval_ratio(const Tables& t, const int* lane, Work& work) {
+HWY_INLINE void eval_ratio(const Tables& t, const int* lane, const Work& work, const double* depth,
+                           double* ratio, double* ratio_slope) {
   const BivariatePolynomial& r = kDigits == Digits::kFull ? t.ratio : t.coarse_ratio;
   Pack x[kPacks], y[kPacks], value[kPacks], slope[kPacks];
   for (int k = 0; k < kPacks; ++k) {
     const int i = lane[k];
     x[k] = clamped(fused(t.factor_scale, load(work.factor + i), t.factor_offset), -1, 1);
-    y[k] = clamped(fused(t.depth_scale, load(work.cut + i), t.depth_offset), -1, 1);
+    y[k] = clamped(fused(t.depth_scale, load(depth + i), t.depth_offset), -1, 1);
     value[k] = slope[k] = 0;
   }
   const double* c = r.coefficients.data();
@@ -206,9 +220,20 @@ HWY_INLINE void eval_ratio(const Tables& t, const int* lane, Work& work) {
     }
   }
   for (int k = 0; k < kPacks; ++k) {
-    store(value[k], work.ratio + lane[k]);
-    store(slope[k] * t.factor_scale, work.ratio_slope + lane[k]);
+    store(value[k], ratio + lane[k]);
+    store(slope[k] * t.factor_scale, ratio_slope + lane[k]);
   }
+}
+
+/// The same of all packs that are worked on.
+template <Digits kDigits>
+HWY_INLINE void eval_ratios(const Tables& t, const ActiveLanes& active, const Work& work,
+                            const double* depth, double* ratio, double* ratio_slope) {
+  const int* lane = active.begin();
+  for (; active.end() - lane >= 2; lane += 2) {
+    eval_ratio<kDigits, 2>(t, lane, work, depth, ratio, ratio_slope);
+  }
+  if (lane != active.end()) eval_ratio<kDigits, 1>(t, lane, work, depth, ratio, ratio_slope);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include <cstddef>
 
 #include "core/contact/contact_slopes.h"
+#include "core/contact/limited_rim-inl.h"
 #include "core/laws/asperities-inl.h"
 #include "core/laws/film-inl.h"
 #include "core/laws/heat-inl.h"
@@ -83,6 +84,15 @@ HWY_INLINE Dual<Pack, kCount> constant(Pack value) {
   Dual<Pack, kCount> out(0.0);
   out.value = value;
   return out;
+}
+/// The same as a number of any kind.
+template <class Real>
+HWY_INLINE Real as(Pack value) {
+  if constexpr (std::same_as<Real, Pack>) {
+    return value;
+  } else {
+    return constant<Real::kVariables>(value);
+  }
 }
 
 /// The film if it carried all the load, the sliding and what the speeds do to the heat.
@@ -231,7 +241,7 @@ HWY_NOINLINE void eval_shared_contact(const ContactBlockTables& t, const Columns
   stages.gain = line.gain;
 }
 
-/// int tau c p d(c p) from the edge to a depth s = ln(1 + c p), and the same weighted with the
+/// int tau c p d(c p) between two depths s = ln(1 + c p), and the same weighted with the
 /// derivatives of ln tau by the arguments of its growth.
 struct Moments {
   Pack value;
@@ -275,43 +285,49 @@ HWY_INLINE Rule rule_for(Pack log_growth) {
   return gauss_rule<16>();
 }
 
-/// Panels that are even in s, from 0 to a depth.
+/// Panels that are even in s, between two depths.
 struct Panels {
   int count;
-  Pack width;
+  Pack from, width;
   Rule rule;
+
+  /// The depth of a node.
+  HWY_INLINE Pack at(int panel, int n) const { return fused(width, panel + rule.node[n], from); }
 };
 /// `steepness`: d ln tau/ds at the depth `end`. ln tau is steepest there: a stress as steep
 /// everywhere would have at least as many e-folds.
-HWY_INLINE Panels panels_to(Pack end, Pack steepness) {
-  const Pack log_growth = (steepness + 2) * end;
+HWY_INLINE Panels panels_between(Pack from, Pack end, Pack steepness) {
+  const Pack length = end - from, log_growth = (steepness + 2) * length;
   const int count = panels_of(log_growth);
-  return {count, end * (1.0 / count), rule_for(log_growth * (1.0 / count))};
+  return {count, from, length * (1.0 / count), rule_for(log_growth * (1.0 / count))};
 }
 
 /// How ln tau grows from the edge to a depth under a pressure-viscosity law, and the moments of
-/// that: a policy of eval_mean_stress().
+/// that between two depths: a policy of eval_mean_stress().
 template <class G>
 concept GrowthMoments = requires(const ContactBlockTables& t, Pack temperature, Pack base,
-                                 Pack factor, Pack depth, Moments& out) {
+                                 Pack factor, Pack depth, Dual<Pack, 1> varied, Moments& out) {
   { G::log_stress_at(t, temperature, base, factor, depth) } -> std::same_as<Pack>;
-  G::eval(t, temperature, base, factor, depth, out);
+  { G::log_stress_at(t, temperature, base, factor, varied) } -> std::same_as<Dual<Pack, 1>>;
+  G::eval(t, temperature, base, factor, depth, depth, out);
 };
 
 struct RoelandsMoments {
-  static HWY_INLINE Pack log_stress_at(const ContactBlockTables& t, Pack, Pack base, Pack factor,
-                                       Pack s) {
-    return log_under_pressure(base, factor, exponential(t.shear.index * s) - 1);
+  template <class Real>
+  static HWY_INLINE Real log_stress_at(const ContactBlockTables& t, Pack, Pack base, Pack factor,
+                                       Real s) {
+    return log_under_pressure(as<Real>(base), as<Real>(factor),
+                              exponential(t.shear.index * s) - 1.0);
   }
-  static HWY_INLINE void eval(const ContactBlockTables& t, Pack, Pack base, Pack factor, Pack end,
-                              Moments& out) {
+  static HWY_INLINE void eval(const ContactBlockTables& t, Pack, Pack base, Pack factor, Pack from,
+                              Pack end, Moments& out) {
     const double index = t.shear.index;
     const Pack offset = base - factor;
     Pack value = 0, by_factor = 0, by_index = 0;
-    const Panels panels = panels_to(end, index * factor * exponential(index * end));
+    const Panels panels = panels_between(from, end, index * factor * exponential(index * end));
     for (int panel = 0; panel < panels.count; ++panel) {
       for (int n = 0; n < panels.rule.nodes; ++n) {
-        const Pack s = panels.width * (panel + panels.rule.node[n]);
+        const Pack s = panels.at(panel, n);
         const Pack u = exponential<kMomentDigits>(s), power = exponential(index * s);
         const Pack stress =
             exponential<kMomentDigits>(clamped(fused(factor, power, offset), -600, 100));
@@ -331,24 +347,24 @@ struct RoelandsMoments {
 struct LawMoments {
   using Number = Dual<Pack, kGrowthArguments>;
 
-  static HWY_INLINE Pack log_stress_at(const ContactBlockTables& t, Pack temperature, Pack base,
-                                       Pack, Pack s) {
-    return base + pressure_growth(t.shear.growth, temperature,
-                                  exponential_less_one(s) * (1 / kRoelandsPressureCoefficient));
+  template <class Real>
+  static HWY_INLINE Real log_stress_at(const ContactBlockTables& t, Pack temperature, Pack base,
+                                       Pack, Real s) {
+    return as<Real>(base) +
+           pressure_growth(t.shear.growth, as<Real>(temperature),
+                           exponential_less_one(s) * (1 / kRoelandsPressureCoefficient));
   }
-  static HWY_INLINE void eval(const ContactBlockTables& t, Pack at, Pack base, Pack, Pack end,
-                              Moments& out) {
-    const auto end_pressure =
-        exponential_less_one(Dual<Pack, 1>::variable(end, 0)) * (1 / kRoelandsPressureCoefficient);
+  static HWY_INLINE void eval(const ContactBlockTables& t, Pack at, Pack base, Pack, Pack from,
+                              Pack end, Moments& out) {
     const auto law = by_its_parameters<Number>(t.shear.growth);
     const Number temperature = Number::variable(at, 0);
     out.value = 0;
     for (int k = 0; k < kGrowthArguments; ++k) out.by_growth[k] = 0;
-    const Panels panels =
-        panels_to(end, pressure_growth(t.shear.growth, constant<1>(at), end_pressure).slope[0]);
+    const Pack steepness = log_stress_at(t, at, base, 0, Dual<Pack, 1>::variable(end, 0)).slope[0];
+    const Panels panels = panels_between(from, end, steepness);
     for (int panel = 0; panel < panels.count; ++panel) {
       for (int n = 0; n < panels.rule.nodes; ++n) {
-        const Pack q = exponential_less_one(panels.width * (panel + panels.rule.node[n]));
+        const Pack q = exponential_less_one(panels.at(panel, n));
         const Number growth = pressure_growth(
             law, temperature, constant<kGrowthArguments>(q * (1 / kRoelandsPressureCoefficient)));
         const Pack stress = exponential<kMomentDigits>(clamped(base + growth.value, -600, 100));
@@ -362,8 +378,25 @@ struct LawMoments {
   }
 };
 
+/// c p at which a limited rim ends; 0 without one. `scaled`: c p at the centre.
+template <GrowthMoments Growth>
+HWY_INLINE Pack end_of_rim(const ContactBlockTables& t, Pack temperature, Pack base, Pack factor,
+                           Pack scaled) {
+  constexpr int kSteps = 6;  // from the edge, as start_rim(): the error is cubed or better
+  const double edge_limit = t.shear.lubricant.limiting_shear_stress_at_zero_pressure;
+  Pack x = 0;
+  for (int n = 0; n < kSteps; ++n) {
+    const Dual<Pack, 1> log_stress = Growth::log_stress_at(
+        t, temperature, base, factor, logarithm(Dual<Pack, 1>::variable(x, 0) + 1.0));
+    const LimitExcess h(exponential(clamped(log_stress.value, -600, 100)), log_stress.slope[0],
+                        limiting_shear_stress(edge_limit, t.limit_slope, x), t.limit_slope);
+    x = clamped(x + RimStep(h).change, 0, scaled);
+  }
+  return where(base > t.log_limit_at_edge, x);
+}
+
 /// Derivatives of ln tau_bar at the temperature found. The place where the stress meets tau_L
-/// follows from the area share on it.
+/// towards the centre follows from the area share on it.
 template <GrowthMoments Growth>
 HWY_NOINLINE void eval_mean_stress(const ContactBlockTables& t, const Columns& solved,
                                    SlopeStages& stages, std::size_t i) {
@@ -392,11 +425,17 @@ HWY_NOINLINE void eval_mean_stress(const ContactBlockTables& t, const Columns& s
       law, StressNumber::variable(temperature, 0), StressNumber::variable(log_rate, 1));
 
   const Pack scaled = kRoelandsPressureCoefficient * stages.pressure.value;
-  const Pack free = root(1 - row(kSolvedLimitedAreaShare)), q = scaled * free;
-  const Pack mean = row(kSolvedMeanShearStress);
+  const Pack share = row(kSolvedLimitedAreaShare), mean = row(kSolvedMeanShearStress);
+  Pack q = scaled * root(1 - share), rim = 0;  // c p where tau_L holds again, and up to where
+  if (t.limited_rim && any(stress.base.value > t.log_limit_at_edge)) {
+    rim = where(share < 1,
+                end_of_rim<Growth>(t, temperature, stress.base.value, stress.factor.value, scaled));
+    q = greatest(least(root(fused(q, q, rim * rim)), scaled), rim);
+  }
   const Pack per_integral = 2 / (mean * square(scaled));
   Moments moments;
-  Growth::eval(t, temperature, stress.base.value, stress.factor.value, logarithm(q + 1), moments);
+  Growth::eval(t, temperature, stress.base.value, stress.factor.value, logarithm(rim + 1),
+               logarithm(q + 1), moments);
   const Pack by_base = moments.value * per_integral;
   for (int k = 0; k < kGrowthArguments; ++k) {
     stages.by_growth[k] = moments.by_growth[k] * per_integral;
@@ -417,12 +456,13 @@ HWY_NOINLINE void eval_mean_stress(const ContactBlockTables& t, const Columns& s
   if (t.limited) {
     const Pack limit =
         limiting_shear_stress(oil.limiting_shear_stress_at_zero_pressure, t.limit_slope, scaled);
-    centre = select(free < 1, limit, centre);
+    centre = least(centre, limit);
   }
   stages.by_log_pressure = 2 * centre / mean - 2;
-  stages.by_limit_at_zero_pressure = 0.5 * (square(scaled) - square(q)) * per_integral;
-  stages.by_limit_coefficient = (square(scaled) * scaled - square(q) * q) * per_integral *
-                                (1 / (3 * kRoelandsPressureCoefficient));
+  stages.by_limit_at_zero_pressure =
+      0.5 * (square(scaled) - square(q) + square(rim)) * per_integral;
+  stages.by_limit_coefficient = (square(scaled) * scaled - square(q) * q + square(rim) * rim) *
+                                per_integral * (1 / (3 * kRoelandsPressureCoefficient));
 }
 
 /// The temperature by the implicit function theorem, and the chain rule to conditions and levels.

@@ -211,12 +211,72 @@ TEST(ContactBatch, RealisticContactsUnderTheImprovedYasutomiLawRarelyNeedTheScal
   EXPECT_LT(by_scalar_kernel, all / 100);
 }
 
+// With tau_L0 = 0 the rim is always on the limit; with a small one, under a high stress.
+TEST(ContactBatch, RimsOnTheLimitOfRandomStates) {
+  constexpr int kCases = kShortRun ? 20 : 300, kEach = 20;
+  for (const bool yasutomi : {false, true}) {
+    Draw draw(76);
+    SCOPED_TRACE(draw.seed());
+    std::size_t by_scalar_kernel = 0;
+    Worst worst;
+    for (int n = 0; n < kCases; ++n) {
+      SCOPED_TRACE("case " + std::to_string(n) + (yasutomi ? ", Yasutomi" : ""));
+      ContactCase c = random_contact_case(draw);
+      c.sump_temperature = draw.between(273.15, 403.15);
+      if (yasutomi) set_yasutomi(gear_oil_80w90(), c.lubricant);
+      c.lubricant.limiting_shear_stress_at_zero_pressure =
+          n % 2 == 0 ? 0 : draw.log_between(1, 1e6);
+      c.options.newtonian = n % 8 == 4;
+      c.options.isothermal = n % 8 == 7;
+      std::vector<ContactConditions> conditions;
+      for (int i = 0; i < kEach; ++i) conditions.push_back(random_contact_case(draw).conditions);
+      try {
+        by_scalar_kernel += expect_agreement(c, conditions, &worst);
+      } catch (const Refusal&) {
+        --n;  // a fluid without a model
+      }
+    }
+    std::cout << "left to the scalar kernel: " << 100.0 * by_scalar_kernel / (kCases * kEach)
+              << " %, greatest difference " << worst << "\n";
+    EXPECT_LT(by_scalar_kernel, kCases * kEach / 2);
+  }
+}
+
+TEST(ContactBatch, RealisticRimsOnTheLimitRarelyNeedTheScalarKernel) {
+  Worst worst;
+  std::size_t by_scalar_kernel = 0, all = 0;
+  for (const int fluid : {1, 2, 3}) {
+    for (const double sump : {20.0, 40.0, 90.0}) {
+      for (const double coefficient : {0.029, 0.083}) {
+        const Scene scene = reference_scene(fluid, sump);
+        ContactCase c;
+        c.lubricant = scene.lubricant;
+        c.lubricant.limiting_shear_stress_at_zero_pressure = 0;
+        c.lubricant.limiting_shear_stress_coefficient = coefficient;
+        c.sump_temperature = scene.sump_temperature;
+        for (double speed = 20; speed <= 140; speed += kShortRun ? 40 : 10) {
+          SCOPED_TRACE("fluid " + std::to_string(fluid) + ", sump " + std::to_string(sump) + ", " +
+                       std::to_string(speed) + " km/h");
+          const RealisticContacts contacts = realistic_contacts(scene, speed, 40);
+          by_scalar_kernel += expect_agreement(c, contacts.conditions, &worst);
+          all += contacts.conditions.size();
+        }
+      }
+    }
+  }
+  std::cout << by_scalar_kernel << " of " << all
+            << " left to the scalar kernel, greatest difference " << worst << "\n";
+  EXPECT_LT(by_scalar_kernel, all / 500);
+  EXPECT_LT(worst.half, 2e-6);
+}
+
 TEST(ContactBatch, SameBitsAloneAndInAnyCompany) {
   Draw draw(72);
   SCOPED_TRACE(draw.seed());
   for (int n = 0; n < (kShortRun ? 2 : 20); ++n) {
     ContactCase c = n % 2 == 0 ? ContactCase() : random_contact_case(draw);
     if (n % 4 == 0) set_yasutomi(gear_oil_80w90(), c.lubricant);
+    if (n % 3 == 0) c.lubricant.limiting_shear_stress_at_zero_pressure = 1e5 * (n % 2);
     const std::vector<ContactConditions> conditions = mixed_conditions(draw, 150);
     for (const InstructionSet set : supported_instruction_sets()) {
       SCOPED_TRACE(FlankContactBatch::name(set));
@@ -260,6 +320,7 @@ TEST(ContactBatch, EveryWidthWithFusedMultiplyAddsGivesTheSameBits) {
       set_yasutomi(gear_oil_80w90(), c.lubricant);
       c.sump_temperature = draw.between(273.15, 403.15);
     }
+    if (n % 3 == 0) c.lubricant.limiting_shear_stress_at_zero_pressure = 1e5 * (n % 2);
     const std::vector<ContactConditions> conditions = mixed_conditions(draw, 100);
     ContactArrays narrow(conditions, c.solid, c.options), wide(conditions, c.solid, c.options);
     narrow.solve(FlankContactBatch(c.model(), InstructionSet::kAvx2));
@@ -419,6 +480,7 @@ TEST(ContactBatch, ModelsThatItCannotCertifyAreSolvedByTheScalarKernel) {
   cases[2].options.as_published.eq43_44_polynomials = true;
   cases[3].options.hertz_load = HertzLoad::kTotalLoad;
   cases[4].lubricant.limiting_shear_stress_at_zero_pressure = 0;
+  cases[4].lubricant.limiting_shear_stress_coefficient = 0;
   cases[5].lubricant.density_temperature_slope = 0.1;
   for (const ContactCase& c : cases) {
     ContactArrays arrays({c.conditions}, c.solid, c.options);
@@ -444,7 +506,8 @@ TEST(ContactBatch, AnyStartLeadsToTheSameAnswer) {
   Draw draw(75);
   SCOPED_TRACE(draw.seed());
   for (int n = 0; n < (kShortRun ? 5 : 50); ++n) {
-    const ContactCase c = n == 0 ? ContactCase() : random_contact_case(draw);
+    ContactCase c = n == 0 ? ContactCase() : random_contact_case(draw);
+    if (n % 3 == 2) c.lubricant.limiting_shear_stress_at_zero_pressure = 0;
     const FlankContactModel model = c.model();
     const FlankContactBatch batch(model);
     ContactArrays arrays(mixed_conditions(draw, 100), c.solid, c.options);
