@@ -39,6 +39,23 @@ bool provably_falling(const ShearedFilm& film, double cold, double hot) {
   return true;
 }
 
+/// A lower bound of the slope of H(y) between two temperatures, from the same bound of d ln tau/dT;
+/// -infinity if the growth of viscosity with pressure may rise with temperature.
+double least_slope(const ShearedFilm& film, double base, double cold, double hot) {
+  const Lubricant& oil = film.law->lubricant;
+  const double product = oil.havriliak_negami_alpha * oil.havriliak_negami_beta;
+  if (!laws::pressure_growth_falls(film.law->growth, cold, film.maximum_pressure)) {
+    return -std::numeric_limits<double>::infinity();
+  }
+  if (film.law->newtonian) return 1;
+  const double rise = 1 / cold + oil.density_temperature_slope / density(oil, cold);
+  const double above = cold - oil.vogel_reference_temperature;
+  const double steepest =
+      std::max(0.0, product - 1) * oil.vogel_temperature_coefficient / (above * above) +
+      product * std::max(0.0, rise);
+  return 1 - (hot - base) * steepest;
+}
+
 /// w with w e^w = z, z >= 0, to a few digits: the start of the iteration only.
 double lambert_start(double z) {
   double w = std::log1p(z) * (1 - std::log1p(std::log1p(z)) / (2 + std::log1p(z)));
@@ -106,25 +123,37 @@ ThermalEquilibrium solve_thermal_equilibrium(const ShearedFilm& film, double bas
     return answer(0.5 * (lower + upper), 1);
   }
 
-  // Scan ln(T - base) from far below any root to the highest temperature allowed.
+  // Halve ln(T - base), from far below any root to the highest temperature allowed.
   const double top =
       std::isfinite(highest_temperature) ? std::log(highest_temperature - base) : std::log(1e7);
   const double bottom = std::min(top, unheated) - 40;
-  constexpr int kScan = 400;
-  const auto value = [&](double y) { return balance(y, stress).value; };
-  int roots = 0;
-  double first = 0, left = bottom, f_left = value(bottom);
-  for (int i = 1; i <= kScan; ++i) {
+  struct Place {
+    double t, y, value;
+  };
+  const auto place = [&](double t) {
     // Denser towards the top, where the curve turns.
-    const double t = static_cast<double>(i) / kScan;
-    const double right = bottom + (top - bottom) * (1 - (1 - t) * (1 - t));
-    const double f_right = value(right);
-    if ((f_left < 0) != (f_right < 0)) {
-      if (++roots == 1) first = bracketed_root(value, left, right, f_left, f_right);
+    const double y = bottom + (top - bottom) * (1 - (1 - t) * (1 - t));
+    return Place{t, y, balance(y, stress).value};
+  };
+  int roots = 0;
+  double first = 0;
+  const auto search = [&](const auto& self, const Place& left, const Place& right,
+                          int halvings) -> void {
+    const double least = least_slope(film, base, base + std::exp(left.y), base + std::exp(right.y));
+    const double most_fall = std::max(0.0, -least * (right.y - left.y));
+    const bool meets = (left.value < 0) != (right.value < 0);
+    const double margin = left.value < 0 ? -right.value : left.value;
+    if (most_fall > 0 && !(margin > most_fall) && halvings > 0) {
+      const Place middle = place(0.5 * (left.t + right.t));
+      self(self, left, middle, halvings - 1);
+      self(self, middle, right, halvings - 1);
+    } else if (meets && ++roots == 1) {
+      first = safeguarded_newton([&](double y) { return balance(y, stress); }, left.y, right.y,
+                                 0.5 * (left.y + right.y), left.value < 0, 1e-9);
     }
-    left = right;
-    f_left = f_right;
-  }
+  };
+  constexpr int kMostHalvings = 9;
+  search(search, place(0), place(1), kMostHalvings);
   if (roots == 0) return {0, base, cold};
   return answer(first, roots);
 }

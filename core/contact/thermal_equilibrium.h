@@ -18,8 +18,10 @@ struct ThermalEquilibrium {
 ///     bracket. The start takes tau_bar as an exponential of T (Lambert's W).
 ///  3. Newton's method inside of the bracket, with a bisection in every eighth step: plain Newton
 ///     may alternate between the plateau of the limited stress and its hot tail.
-///  4. Otherwise y is scanned in 400 steps, up to the zero of the density law; all roots are
-///     counted, the coldest one is returned.
+///  4. Otherwise the range of y, up to the zero of the density law, is halved until the values at
+///  the
+///     ends of each part and a bound of the slope of H prove that the part holds one root or none,
+///     nine times at most; all roots are counted, the coldest one is returned.
 /// (C. T. Kelley, Solving Nonlinear Equations with Newton's Method, 2003; R. M. Corless et al.,
 /// Adv. Comput. Math. 5, 1996, 329, for Lambert's function.) No roots if base is outside eqs 26 and
 /// 34. gain = 0 (isothermal) evaluates the stress at base.
