@@ -15,9 +15,9 @@ struct BranchPoint {
   double swing = 0;         ///< of the transmission error: greatest less least [m]
   bool settled = false;     ///< it repeats
   long marched_cycles = 0;  ///< mesh cycles marched to find it; 0 if shooting found it
+  CarriedState state;
   /// Of the speed, relative, to a neighbour: a longer step might miss a bifurcation.
   double longest_step = std::numeric_limits<double>::infinity();
-  CarriedState state;
 };
 
 /// Where the branch that a sweep follows ends, as at a fold: the response jumps. In the sweep's
@@ -38,7 +38,7 @@ struct BranchSolver {
   /// By shooting, or marched where shooting does not decide; not set: only shooting is wanted.
   SolveOnBranch by_any_method;
   /// The response with contact loss at a speed, by shooting from PointStart::kLargeVibration.
-  std::function<std::optional<BranchPoint>(double)> loud;
+  std::function<std::optional<BranchPoint>(double)> loud = {};
 };
 
 /// Tightest relative tolerance of the solutions that locate an end: a hundredth of the distance of

@@ -48,8 +48,8 @@ BranchPoint on_branch(PreparedScene& scene, const PointResult& r) {
           r.dynamic_transmission_error.maximum - r.dynamic_transmission_error.minimum,
           r.settled,
           r.method == SteadyStateMethod::kMarch ? r.statistics.mesh_cycles : 0,
-          longest_step(gear_set.modes(), gear_set.system(), r),
-          carried_from(r)};
+          carried_from(r),
+          longest_step(gear_set.modes(), gear_set.system(), r)};
 }
 
 /// Solves between two neighbours of a sweep with the options of the sweep, but loosely and without
