@@ -69,6 +69,7 @@ FlankContactModel::FlankContactModel(const Lubricant& lubricant, const SolidPair
       options_(options) {
   const double inlet_temperature = bath_temperature + inlet_temperature_rise;
   check_above_vogel(lubricant, inlet_temperature, "an inlet temperature");
+  check_ambient_viscosity(lubricant, inlet_temperature, "an inlet temperature");
   const bool roelands = lubricant.pressure_viscosity_law == PressureViscosityLaw::kRoelands;
   const double where_measured = lubricant.pressure_viscosity_temperature;
   if (roelands) check_above_vogel(lubricant, where_measured, "a pressure-viscosity temperature");
@@ -130,10 +131,9 @@ ContactStatus FlankContactModel::share_load(const ContactConditions& k,
   out.pressure_viscosity_index = constants_.shear.index;
   out.reduced_modulus = constants_.reduced_modulus;
 
-  // The equations have its logarithm only, which stays finite where the viscosity does not.
-  if (!std::isnormal(out.inlet_viscosity) || !std::isfinite(loaded.film_thickness) ||
+  if (!std::isfinite(loaded.film_thickness) ||
       (loaded.film_thickness == 0 && loaded.entrainment_speed > 0)) {
-    return ContactStatus::kRefusedOverflow;
+    return ContactStatus::kRefusedFilmOverflow;
   }
   const SharedLoad share = solve_load_sharing(loaded.sharing);
   if (!share.found) return ContactStatus::kRefusedNoLoadSharing;
@@ -260,7 +260,12 @@ constexpr StatusText kStatusTexts[] = {
     {"NO_CONTACT_TEMPERATURE",
      "no contact temperature balances heat and conduction while the density law of eq 26 is "
      "positive"},
-    {"OVERFLOW", "a law left the range of double precision"},
+    {"OVERFLOW",
+     "the film thickness of eq 12 left the range of double precision: check the units of load, "
+     "radii, velocities and elastic moduli"},
+    {"OVERFLOW",
+     "pressure, heat or friction of the contact, of eqs 18 to 42, left the range of double "
+     "precision: check the units of load, radii, velocities, roughness and thermal properties"},
 };
 static_assert(std::size(kStatusTexts) == static_cast<int>(ContactStatus::kRefusedOverflow) + 1);
 

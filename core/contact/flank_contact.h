@@ -18,14 +18,16 @@ enum class ContactStatus {
   kRefusedNoLoadSharing,  ///< no root of W_EHL + W_asp = W (as_published.eq43_44 or total-load
                           ///< ellipse)
   kRefusedNoTemperature,  ///< no thermal equilibrium while the density law is positive
-  kRefusedOverflow,       ///< a law left the range of double precision
+  kRefusedFilmOverflow,   ///< the film left the range of double precision
+  kRefusedOverflow,       ///< another law left the range of double precision
 };
 
 /// Highest contact temperature of an answer about a single contact [K]: steel melts at about 1800
 /// K, and oil decomposes far below.
 inline constexpr double kHottestContact = 1800;
 
-/// Stable UPPER_SNAKE_CASE name of a status, and one sentence for a person.
+/// UPPER_SNAKE_CASE name of a status, which several statuses may share, and one sentence for a
+/// person that names the law and the likely cure.
 const char* contact_status_name(ContactStatus status);
 const char* contact_status_sentence(ContactStatus status);
 
@@ -88,8 +90,9 @@ class FlankContactModel {
   /// Prepares all that does not depend on the instant: Z and alpha* (eqs 31, 32 and 33), inlet
   /// viscosity (eq 34 at T_in = bath + rise), reduced modulus, Greenwood-Tripp prefactors.
   /// bath_temperature, inlet_temperature_rise in K.
-  /// Throws Refusal when T_in is at or below the Vogel reference temperature, when no Z gives
-  /// alpha* back, or when a parameter is outside the law's domain.
+  /// Throws Refusal when T_in is at or below the Vogel reference temperature or the oil too thick
+  /// there (check_ambient_viscosity), when no Z gives alpha* back, or when a parameter is outside
+  /// the law's domain.
   FlankContactModel(const Lubricant& lubricant, const SolidPair& solids, const Roughness& roughness,
                     const BoundaryFriction& boundary, double bath_temperature,
                     double inlet_temperature_rise, const ModelOptions& options);

@@ -49,6 +49,22 @@ void check_above_vogel(const Lubricant& lubricant, double temperature, const cha
                                                ": eq 34 has no viscosity there");
 }
 
+void check_ambient_viscosity(const Lubricant& lubricant, double temperature, const char* what) {
+  const double viscosity = ambient_viscosity(lubricant, temperature);
+  if (viscosity <= kGreatestAmbientViscosity && std::isnormal(viscosity)) return;
+  const double vogel = lubricant.vogel_reference_temperature;
+  throw Refusal("VISCOSITY_OUT_OF_RANGE",
+                "eq 34 (Vogel) gives " + number_text(viscosity, 3) + " Pa s at " + what + " of " +
+                    celsius_text(temperature) + ", allowed: positive and at most " +
+                    number_text(kGreatestAmbientViscosity) +
+                    " Pa s, beyond which no oil flows; check the reference temperature T_0 of " +
+                    celsius_text(vogel) + ", which is " + number_text(temperature - vogel, 3) +
+                    " K below, the coefficient A_1 of " +
+                    number_text(lubricant.vogel_temperature_coefficient) +
+                    " K and the unit of the prefactor of " +
+                    number_text(lubricant.vogel_viscosity_prefactor) + " Pa s");
+}
+
 void check_pressure_growth(const Lubricant& lubricant, double temperature,
                            const AsPublished& as_published) {
   if (lubricant.pressure_viscosity_law != PressureViscosityLaw::kRoelands) {

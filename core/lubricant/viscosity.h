@@ -53,6 +53,15 @@ double index_from_reciprocal_asymptotic(double factor, double coefficient);
 /// as "an inlet temperature".
 void check_above_vogel(const Lubricant& lubricant, double temperature, const char* what);
 
+/// The greatest ambient viscosity of a contact's oil [Pa s]: a thousand times that at which gear
+/// oils stop flowing (some 1e3 Pa s at the pour point of ASTM D97), where eq 12 would extrapolate
+/// to films of centimetres. Under pressure the viscosity may be any.
+inline constexpr double kGreatestAmbientViscosity = 1e6;
+
+/// Throws Refusal VISCOSITY_OUT_OF_RANGE if eq 34 gives more than kGreatestAmbientViscosity at a
+/// temperature [K] above T_0,ref, or less than the least normal number. `what`: as above.
+void check_ambient_viscosity(const Lubricant& lubricant, double temperature, const char* what);
+
 /// Throws Refusal ROELANDS_FACTOR or PARAMETER_OUT_OF_RANGE (check_greatest_viscosity) if the
 /// pressure-viscosity law does not hold at a temperature [K] above T_0,ref.
 void check_pressure_growth(const Lubricant& lubricant, double temperature,

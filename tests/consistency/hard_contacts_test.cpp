@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "core/contact/hertz.h"
+#include "core/lubricant/viscosity.h"
 #include "tests/consistency/plain_contact.h"
+#include "tests/support/refusal_reason.h"
 #include "yardstick_friction.h"
 
 // Contacts at the edges of the laws: each has a closed form, a brute-force value, the value of the
@@ -362,6 +364,24 @@ TEST(HardContacts, ThreeHundredMetresPerSecondOfSliding) {
   }
 }
 
+TEST(HardContacts, OilTooThickToFlowIsRefused) {
+  ContactCase c;
+  c.lubricant.vogel_reference_temperature = 230;
+  c.sump_temperature = 233.15;
+  for (const bool yasutomi : {false, true}) {
+    if (yasutomi) c.lubricant.pressure_viscosity_law = PressureViscosityLaw::kImprovedYasutomi;
+    c.lubricant.law_parameters = {1e16, 210.6, 0.455e-9, 7.606e-9, -0.4193};
+    c.inlet_temperature_rise = 20;
+    EXPECT_EQ(refusal_reason([&] { c.model(); }), "VISCOSITY_OUT_OF_RANGE");
+    // Up to the limit, and no further.
+    const double highest = 230 + 944.8 / std::log(1e6 / 1.55e-4);
+    c.inlet_temperature_rise = highest - c.sump_temperature - 1e-6;
+    EXPECT_EQ(refusal_reason([&] { c.model(); }), "VISCOSITY_OUT_OF_RANGE");
+    c.inlet_temperature_rise += 2e-6;
+    EXPECT_EQ(refusal_reason([&] { c.model(); }), "none");
+  }
+}
+
 TEST(HardContacts, BelowTheVogelTemperatureThereIsNoViscosity) {
   const auto reason = [](const ContactCase& c) {
     try {
@@ -379,8 +399,8 @@ TEST(HardContacts, BelowTheVogelTemperatureThereIsNoViscosity) {
     EXPECT_EQ(reason(c), "BELOW_VOGEL_TEMPERATURE");
   }
   c.sump_temperature = std::nextafter(vogel, 1e3);  // e^(1e16) Pa s
-  EXPECT_EQ(reason(c), "OVERFLOW");
-  c.sump_temperature = vogel + 20;
+  EXPECT_EQ(reason(c), "VISCOSITY_OUT_OF_RANGE");
+  c.sump_temperature = vogel + 60;
   EXPECT_EQ(reason(c), "OK");
   c.lubricant.pressure_viscosity_temperature = vogel;
   EXPECT_EQ(reason(c), "BELOW_VOGEL_TEMPERATURE");
