@@ -9,7 +9,9 @@
 
 #include "core/contact/contact_equations.h"
 #include "core/contact/thermal_equilibrium.h"
+#include "core/lubricant/lubricant_parameters.h"
 #include "core/lubricant/viscosity.h"
+#include "core/parameter_check.h"
 #include "core/refusal.h"
 
 namespace tribodyn {
@@ -67,6 +69,15 @@ FlankContactModel::FlankContactModel(const Lubricant& lubricant, const SolidPair
                                      const ModelOptions& options)
     : parameters_{lubricant, solids, roughness, boundary, bath_temperature, inlet_temperature_rise},
       options_(options) {
+  check(lubricant);
+  check(solids.body_1);
+  check(solids.body_2);
+  check(roughness);
+  check(boundary);
+  ParameterCheck temperatures;
+  temperatures.expect("sump_temperature", bath_temperature, "K", Bound::kFinite);
+  temperatures.expect("inlet_temperature_rise", inlet_temperature_rise, "K", Bound::kFinite);
+  temperatures.conclude();
   const double inlet_temperature = bath_temperature + inlet_temperature_rise;
   check_above_vogel(lubricant, inlet_temperature, "an inlet temperature");
   check_ambient_viscosity(lubricant, inlet_temperature, "an inlet temperature");

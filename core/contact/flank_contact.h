@@ -90,9 +90,10 @@ class FlankContactModel {
   /// Prepares all that does not depend on the instant: Z and alpha* (eqs 31, 32 and 33), inlet
   /// viscosity (eq 34 at T_in = bath + rise), reduced modulus, Greenwood-Tripp prefactors.
   /// bath_temperature, inlet_temperature_rise in K.
-  /// Throws Refusal when T_in is at or below the Vogel reference temperature or the oil too thick
-  /// there (check_ambient_viscosity), when no Z gives alpha* back, or when a parameter is outside
-  /// the law's domain.
+  /// Throws Refusal when a parameter is none of a fluid, material or surface (check()), when T_in
+  /// is at or below the Vogel reference temperature or the oil too thick there
+  /// (check_ambient_viscosity), when no Z gives alpha* back, or when a parameter is outside the
+  /// law's domain.
   FlankContactModel(const Lubricant& lubricant, const SolidPair& solids, const Roughness& roughness,
                     const BoundaryFriction& boundary, double bath_temperature,
                     double inlet_temperature_rise, const ModelOptions& options);

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "core/parameter_check.h"
+
 namespace tribodyn {
 
 /// How viscosity grows with pressure. The formulas of all but the first:
@@ -15,6 +17,7 @@ enum class PressureViscosityLaw {
 struct LawParameter {
   const char* name;
   const char* unit;  ///< SI; "1" for none
+  Bound bound;
 };
 
 /// Indices of the parameters of the improved Yasutomi law.
@@ -40,11 +43,11 @@ inline constexpr std::array kLawDescriptions{
     LawDescription{PressureViscosityLaw::kRoelands, "roelands", {}},
     LawDescription{PressureViscosityLaw::kImprovedYasutomi,
                    "improved_yasutomi",
-                   {{{"glass_viscosity", "Pa s"},
-                     {"glass_temperature_rise", "K"},
-                     {"glass_pressure_factor", "1/Pa"},
-                     {"expansivity_pressure_factor", "1/Pa"},
-                     {"expansivity_exponent", "1"}}}},
+                   {{{"glass_viscosity", "Pa s", Bound::kPositive},
+                     {"glass_temperature_rise", "K", Bound::kNotNegative},
+                     {"glass_pressure_factor", "1/Pa", Bound::kNotNegative},
+                     {"expansivity_pressure_factor", "1/Pa", Bound::kNotNegative},
+                     {"expansivity_exponent", "1", Bound::kNotPositive}}}},
 };
 
 /// The properties of a fluid that enter the model. SI units. Laws: core/laws.

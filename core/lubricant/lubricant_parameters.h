@@ -50,6 +50,10 @@ struct LubricantParameters {
 /// sign or far outside what the laws allow.
 void check_stated_parameters(const LubricantParameters<std::optional<KnownParameter>>& parameters);
 
+/// Throws Refusal PARAMETER_OUT_OF_RANGE, all violations in one sentence, if a parameter that the
+/// lubricant's pressure-viscosity law needs is not finite or of a sign that no fluid has.
+void check(const Lubricant& lubricant);
+
 Lubricant values_of(const LubricantParameters<KnownParameter>& parameters);
 
 }  // namespace tribodyn

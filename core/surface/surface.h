@@ -42,4 +42,11 @@ struct SolidPairOf {
 };
 using SolidPair = SolidPairOf<double>;
 
+/// Throw Refusal PARAMETER_OUT_OF_RANGE, all violations in one sentence, where a value is not
+/// finite or of a sign that no surface and no material has. An asperity density of 0 is a smooth
+/// surface.
+void check(const Roughness& roughness);
+void check(const BoundaryFriction& boundary);
+void check(const Solid& solid);
+
 }  // namespace tribodyn

@@ -382,6 +382,45 @@ TEST(HardContacts, OilTooThickToFlowIsRefused) {
   }
 }
 
+TEST(HardContacts, ParametersThatNoFluidSurfaceOrMaterialHasAreRefused) {
+  const auto reason = [](void (*change)(ContactCase&)) {
+    ContactCase c;
+    change(c);
+    return refusal_of([&] { c.model(); });
+  };
+  constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+  const auto expect = [&](const char* field, void (*change)(ContactCase&)) {
+    const std::string text = reason(change);
+    EXPECT_EQ(text.substr(0, text.find(':')), "PARAMETER_OUT_OF_RANGE") << field;
+    EXPECT_NE(text.find(field), std::string::npos) << text;
+  };
+  expect("relaxation_time", [](ContactCase& c) { c.lubricant.relaxation_time = kNoNumber; });
+  expect("thermal_conductivity", [](ContactCase& c) { c.lubricant.thermal_conductivity = -1; });
+  expect("vogel_temperature_coefficient",
+         [](ContactCase& c) { c.lubricant.vogel_temperature_coefficient = -1; });
+  expect("limiting_shear_stress_coefficient",
+         [](ContactCase& c) { c.lubricant.limiting_shear_stress_coefficient = -0.03; });
+  expect("density_temperature_slope",
+         [](ContactCase& c) { c.lubricant.density_temperature_slope = kInfinity; });
+  expect("expansivity_exponent", [](ContactCase& c) {
+    c.lubricant.pressure_viscosity_law = PressureViscosityLaw::kImprovedYasutomi;
+    c.lubricant.law_parameters = {1e12, 210.6, 0.455e-9, 7.606e-9, 0.4193};
+  });
+  expect("poissons_ratio", [](ContactCase& c) { c.solid.poissons_ratio = 0.51; });
+  expect("youngs_modulus", [](ContactCase& c) { c.solid.youngs_modulus = 0; });
+  expect("composite_rms_height", [](ContactCase& c) { c.roughness.composite_rms_height = 0; });
+  expect("tribofilm_shear_strength",
+         [](ContactCase& c) { c.boundary.tribofilm_shear_strength = -1; });
+  expect("sump_temperature", [](ContactCase& c) { c.sump_temperature = kNoNumber; });
+  // Both of them.
+  const auto both = [](ContactCase& c) {
+    c.lubricant.relaxation_time = -1;
+    c.lubricant.havriliak_negami_beta = -1;
+  };
+  expect("relaxation_time", both);
+  expect("havriliak_negami_beta", both);
+}
+
 TEST(HardContacts, BelowTheVogelTemperatureThereIsNoViscosity) {
   const auto reason = [](const ContactCase& c) {
     try {

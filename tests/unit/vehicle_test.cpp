@@ -7,6 +7,7 @@
 
 #include "core/refusal.h"
 #include "tests/support/reference_data.h"
+#include "tests/support/refusal_reason.h"
 
 namespace tribodyn {
 namespace {
@@ -25,6 +26,15 @@ TEST(WheelTorque, IsTheSumOfItsPartsByHand) {
   EXPECT_NEAR(wheel_torque(vehicle, 0, 0, 2), 0.3 * (100 + 2000), 1e-12);
   EXPECT_NEAR(wheel_torque(vehicle, 10, 0.1, -1),
               0.3 * (100 * std::cos(0.1) + 10000 * std::sin(0.1) + 60 - 1000), 1e-11);
+}
+
+TEST(WheelTorque, IsRefusedForAVehicleThatCannotBe) {
+  Vehicle vehicle = reference_vehicle();
+  vehicle.wheel_radius = 0;
+  EXPECT_EQ(refusal_reason([&] { wheel_torque(vehicle, 20, 0, 0); }), "PARAMETER_OUT_OF_RANGE");
+  vehicle = reference_vehicle();
+  vehicle.air_density = std::nan("");
+  EXPECT_EQ(refusal_reason([&] { wheel_torque(vehicle, 20, 0, 0); }), "PARAMETER_OUT_OF_RANGE");
 }
 
 TEST(WheelTorque, MatchesTheReferenceCruise) {
