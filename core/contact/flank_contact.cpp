@@ -247,6 +247,12 @@ double FlankContactModel::flash_temperature_rise(const ContactConditions& k, dou
   return std::max(0.0, contact_temperature - constants_.inlet_temperature - oil_rise);
 }
 
+double FlankContactModel::log_stress_over_limit(const ContactFigures& figures) const {
+  const ShearedFilm film{&constants_.shear, figures.maximum_pressure, std::log(figures.shear_rate),
+                         true};
+  return tribodyn::log_stress_over_limit(film, figures.contact_temperature);
+}
+
 namespace {
 
 /// Of each ContactStatus, in its order.

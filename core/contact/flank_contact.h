@@ -113,6 +113,10 @@ class FlankContactModel {
   double flash_temperature_rise(const ContactConditions& conditions, double film_thickness,
                                 double mean_shear_stress, double contact_temperature) const;
 
+  /// ln(tau/tau_L) at the centre of a solved contact under load, tau the stress without limit:
+  /// positive where the centre is on tau_L; infinite without sliding or without a film.
+  double log_stress_over_limit(const ContactFigures& figures) const;
+
   double inlet_temperature() const { return constants_.inlet_temperature; }
   double pressure_viscosity_index() const { return constants_.shear.index; }
   double reduced_modulus() const { return constants_.reduced_modulus; }  ///< E', eq 13 [Pa]

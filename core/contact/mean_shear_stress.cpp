@@ -340,13 +340,26 @@ MeanShearStress mean_with(const ShearedFilm& film, double temperature, double& s
   return out;
 }
 
+template <StressGrowth Growth>
+double excess_at_centre(const ShearedFilm& film, double temperature) {
+  return Law<Growth>(film, temperature).excess(std::log1p(kC * film.maximum_pressure)).value;
+}
+
+bool is_roelands(const ShearedFilm& film) {
+  return film.law->lubricant.pressure_viscosity_law == PressureViscosityLaw::kRoelands;
+}
+
 }  // namespace
 
 MeanShearStress mean_shear_stress(const ShearedFilm& film, double temperature,
                                   double& switch_guess) {
-  return film.law->lubricant.pressure_viscosity_law == PressureViscosityLaw::kRoelands
-             ? mean_with<RoelandsStress>(film, temperature, switch_guess)
-             : mean_with<LawStress>(film, temperature, switch_guess);
+  return is_roelands(film) ? mean_with<RoelandsStress>(film, temperature, switch_guess)
+                           : mean_with<LawStress>(film, temperature, switch_guess);
+}
+
+double log_stress_over_limit(const ShearedFilm& film, double temperature) {
+  return is_roelands(film) ? excess_at_centre<RoelandsStress>(film, temperature)
+                           : excess_at_centre<LawStress>(film, temperature);
 }
 
 }  // namespace tribodyn

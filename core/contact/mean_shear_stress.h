@@ -62,4 +62,7 @@ struct MeanShearStress {
 MeanShearStress mean_shear_stress(const ShearedFilm& film, double temperature,
                                   double& switch_guess);
 
+/// ln(tau/tau_L) at the centre, at a temperature [K] above T_0,ref.
+double log_stress_over_limit(const ShearedFilm& film, double temperature);
+
 }  // namespace tribodyn

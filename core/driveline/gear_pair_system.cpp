@@ -177,7 +177,6 @@ void GearPairSystem::record_derivative(const double* y, const Instant& at,
   const DrivelineDynamics& d = dynamics_;
   for (int i = kMarchComponents; i < kRecordComponents; ++i) dy[i] = 0;
   double viscous = 0, boundary = 0;
-  bool limited_centre = false;
   for (int k = 0; k < kFlankPairs; ++k) {
     if (!(at.load[k] > 0)) continue;
     const ContactFigures& c = at.contact[k];
@@ -197,7 +196,6 @@ void GearPairSystem::record_derivative(const double* y, const Instant& at,
     dy[kPinionSlidingLoadTime] += at.load[k] * std::min(c.specific_sliding_1, 1e300);
     dy[kGearSlidingLoadTime] += at.load[k] * std::min(c.specific_sliding_2, 1e300);
     dy[kLimitedAreaLoadTime] += at.load[k] * c.limiting_stress_area_share;
-    limited_centre = limited_centre || c.limiting_stress_at_centre;
   }
   dy[kViscousForceSquared] = square(viscous);
   dy[kBoundaryForceSquared] = square(boundary);
@@ -205,7 +203,6 @@ void GearPairSystem::record_derivative(const double* y, const Instant& at,
   dy[kMeshForceTime] = at.mesh_force;
   dy[kPinionFrictionTorqueTime] = at.pinion_friction_torque;
   dy[kGearFrictionTorqueTime] = at.gear_friction_torque;
-  dy[kLimitedCentreTime] = limited_centre ? 1 : 0;
   dy[kGapTime] = regime.side == 0 ? 1 : 0;
   dy[kCoastTime] = regime.side < 0 ? 1 : 0;
   dy[kPinionShaftAngle] = y[kPinionShaftSpeed];

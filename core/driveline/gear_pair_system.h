@@ -34,7 +34,6 @@ enum RecordComponent {
   kPinionSlidingLoadTime,
   kGearSlidingLoadTime,
   kLimitedAreaLoadTime,
-  kLimitedCentreTime,
   kGapTime,
   kCoastTime,
   kPinionShaftAngle,  ///< int phidot_s dt

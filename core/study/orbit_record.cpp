@@ -22,7 +22,7 @@ void record_orbit(const GearPairSystem& system, const PeriodicOrbit& orbit,
       const double weight = p.length * (n == 1 ? 4 : 1) / 6;
       for (int i = 0; i < kRecordComponents; ++i) record.integrals[i] += weight * rate[i];
     }
-    record.add_piece(at);
+    record.add_piece(at, p.end[kTime] - p.start[kTime]);
     if ((side == 0) != (p.regime.side == 0)) {
       record.gap_events.push_back({p.phase, p.start[kTime], p.regime.side == 0});
     }

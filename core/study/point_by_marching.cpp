@@ -148,7 +148,7 @@ ContactRegime record_response(const GearPairSystem& system, ContactSolver& conta
                                                             : step.at(theta);
         evaluate(place->phase(step.start + theta * step.length), at, samples[i]);
       }
-      record.add_step(samples);
+      record.add_step(samples, step.to[kTime] - step.from[kTime]);
     }
     const double end = place->phase(step.start + step.length);
     while (history.wanted() && history.next_phase() < cycle + end) {
@@ -229,7 +229,8 @@ PointResult solve_by_marching(const PointProblem& problem, PointStart start,
   out.statistics.largest_multiplier = steady.largest_multiplier;
   out.recorded_mesh_cycles = steady.settled ? steady.period : options.recorded_mesh_cycles;
   const MarchScales scales = march_scales(system, steady.torques, target.mean_pinion_speed);
-  ResponseRecord record(scales.torque / system.mesh().mean_pinion_contact_radius());
+  ResponseRecord record(scales.torque / system.mesh().mean_pinion_contact_radius(),
+                        problem.contacts.model());
   HistorySampler history(history_request);
   // A speed that is wrong within its tolerance counts I omega times in the energy balance.
   MarchOptions sharper = march.march;

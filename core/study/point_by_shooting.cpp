@@ -23,7 +23,8 @@ SolvedPieces fill_from_orbit(const PointProblem& problem, const PeriodicOrbit& o
                     orbit.pieces, *orbit.contacts, problem.contacts.model());
   ResponseRecord record(
       march_scales(system, orbit.torques, problem.target.mean_pinion_speed).torque /
-      system.mesh().mean_pinion_contact_radius());
+          system.mesh().mean_pinion_contact_radius(),
+      problem.contacts.model());
   record_orbit(system, orbit, solved, record);
   record.fill(orbit.torques, orbit.period, true, out);
   const OrbitPiece& first = orbit.pieces.front();

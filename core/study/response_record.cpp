@@ -1,7 +1,11 @@
 #include "core/study/response_record.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
+
+#include "core/numerics/bracketed_root.h"
+#include "core/numerics/square.h"
 
 namespace tribodyn {
 namespace {
@@ -28,10 +32,103 @@ constexpr ContactFigure kContactFigures[] = {
     {&Contact::specific_sliding_2, &Result::gear_specific_sliding, kGearSlidingLoadTime},
 };
 
+/// Through three values at 0, 1/2 and 1.
+struct Parabola {
+  double constant = 0, linear = 0, quadratic = 0;
+
+  Parabola() = default;
+  explicit Parabola(const std::array<double, 3>& v)
+      : constant(v[0]),
+        linear(4 * v[1] - 3 * v[0] - v[2]),
+        quadratic(2 * (v[0] - 2 * v[1] + v[2])) {}
+  double at(double t) const { return constant + t * (linear + t * quadratic); }
+};
+
+/// ln(tau/tau_L) at the centre of a flank's contact over three samples at 0, 1/2 and 1, by
+/// parabolas through p_max^3, which follows the load through 0, T_c and the logarithm of the shear
+/// rate; -1 without load.
+class CentreExcess {
+ public:
+  CentreExcess(std::span<const Instant, 3> samples, int flank, const FlankContactModel& model)
+      : model_(model) {
+    std::array<double, 3> cube{}, temperature{}, log_rate{};
+    int last = -1;  // of the samples under load
+    for (const int n : {1, 0, 2, 1, 0}) {
+      const ContactFigures& contact = samples[n].contact[flank];
+      if (samples[n].load[flank] > 0) {
+        cube[n] = contact.maximum_pressure * square(contact.maximum_pressure);
+        temperature[n] = contact.contact_temperature;
+        log_rate[n] = std::log(contact.shear_rate);
+        last = n;
+      } else if (last >= 0) {
+        temperature[n] = temperature[last];
+        log_rate[n] = log_rate[last];
+      }
+    }
+    pressure_cubed_ = Parabola(cube);
+    temperature_ = Parabola(temperature);
+    log_shear_rate_ = Parabola(log_rate);
+  }
+  double operator()(double t) const {
+    const double cubed = pressure_cubed_.at(t);
+    if (!(cubed > 0)) return -1;
+    ContactFigures figures;
+    figures.maximum_pressure = std::cbrt(cubed);
+    figures.contact_temperature = temperature_.at(t);
+    figures.shear_rate = std::exp(log_shear_rate_.at(t));
+    return model_.log_stress_over_limit(figures);
+  }
+
+ private:
+  const FlankContactModel& model_;
+  Parabola pressure_cubed_, temperature_, log_shear_rate_;
+};
+
+bool centre_limited(const Instant& at) {
+  bool out = false;
+  for (int k = 0; k < kFlankPairs; ++k) {
+    out = out || (at.load[k] > 0 && at.contact[k].limiting_stress_at_centre);
+  }
+  return out;
+}
+
+/// The share of the time over three samples at even distances during which a contact's centre is on
+/// tau_L. Where that changes from sample to sample, the places of the changes are roots of
+/// CentreExcess.
+double limited_share(std::span<const Instant, 3> samples, const FlankContactModel& model) {
+  const bool first = centre_limited(samples[0]);
+  if (centre_limited(samples[1]) == first && centre_limited(samples[2]) == first) return first;
+  std::vector<CentreExcess> flanks;
+  std::vector<double> places{0, 1};
+  for (int k = 0; k < kFlankPairs; ++k) {
+    const CentreExcess& excess = flanks.emplace_back(samples, k, model);
+    const double at[] = {excess(0), excess(0.5), excess(1)};
+    for (int n = 0; n < 2; ++n) {
+      if ((at[n] > 0) == (at[n + 1] > 0)) continue;
+      places.push_back(bracketed_root(excess, 0.5 * n, 0.5 * (n + 1), at[n], at[n + 1]));
+    }
+  }
+  std::sort(places.begin(), places.end());
+  double share = 0;
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    const double middle = 0.5 * (places[i - 1] + places[i]);
+    const bool limited = std::any_of(flanks.begin(), flanks.end(), [&](const CentreExcess& excess) {
+      return excess(middle) > 0;
+    });
+    if (limited) share += places[i] - places[i - 1];
+  }
+  return share;
+}
+
 }  // namespace
 
 template <std::size_t kCount>
-void ResponseRecord::add(std::span<const Instant, kCount> instants) {
+void ResponseRecord::add(std::span<const Instant, kCount> instants, double duration) {
+  constexpr std::size_t kParabolas = (kCount - 1) / 2;
+  for (std::size_t i = 0; i < kParabolas; ++i) {
+    limited_centre_time_ +=
+        duration / kParabolas * limited_share(instants.subspan(2 * i).template first<3>(), model_);
+  }
   const auto add_to = [&](SampledRange& range, double Mechanics::*member) {
     std::array<double, kCount> v;
     for (std::size_t n = 0; n < kCount; ++n) v[n] = instants[n].*member;
@@ -54,8 +151,8 @@ void ResponseRecord::add_flank(std::span<const Instant, kCount> instants, int k)
   add_counted(load, load_floor_, value, contact_);
 }
 
-template void ResponseRecord::add(std::span<const Instant, kSamples> instants);
-template void ResponseRecord::add(std::span<const Instant, 3> instants);
+template void ResponseRecord::add(std::span<const Instant, kSamples> instants, double duration);
+template void ResponseRecord::add(std::span<const Instant, 3> instants, double duration);
 
 void ResponseRecord::set_transmission_error_range(double minimum, double maximum) {
   transmission_error_ = {minimum, maximum};
@@ -105,7 +202,7 @@ void ResponseRecord::fill(const Torques& torques, double cycles, bool periodic,
     }
     out.limiting_stress_area_share = y[kLimitedAreaLoadTime] / load_time;
   }
-  out.limiting_stress_time_share = y[kLimitedCentreTime] / time;
+  out.limiting_stress_time_share = limited_centre_time_ / time;
   out.contact_loss_time_share = y[kGapTime] / time;
   out.coast_side_contact = y[kCoastTime] > 0;
   out.contact_loss = y[kGapTime] > 0;

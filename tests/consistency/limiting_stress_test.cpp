@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "core/study/operating_point.h"
 #include "tests/consistency/plain_contact.h"
+#include "tests/support/cruise.h"
 #include "tests/support/run_length.h"
 
 // Where the limiting stress vanishes, is constant, or meets the stress twice.
@@ -81,6 +85,44 @@ TEST(LimitingStress, ClippedAtRimAndCentreButNotBetween) {
   EXPECT_TRUE(scan.centre);
   EXPECT_NEAR(s.limiting_stress_area_share, scan.area_share, 1e-12);
   EXPECT_LE(difference(s.mean_shear_stress, brute_force_stress(c, s)), 1e-10);
+}
+
+/// Share of time with a contact centre on the limit, the limiting stress multiplied by `factor`.
+double limited_time_share(Scene scene, double speed, const PointOptions& options,
+                          double factor = 1) {
+  scene.lubricant.limiting_shear_stress_at_zero_pressure *= factor;
+  scene.lubricant.limiting_shear_stress_coefficient *= factor;
+  return solve_operating_point(scene, cruise(speed), options).limiting_stress_time_share;
+}
+
+// Where the stress crosses the limit at a small angle, the place depends on the last digits of
+// both.
+TEST(LimitingStress, ShareOfTimeOnTheLimitIsAsExactAsThePoint) {
+  constexpr double kTolerance = 1e-3;
+  int limited_for_a_time = 0;
+  for (const double at_zero : {0.0, 4e6}) {
+    for (const double sump : {10.0, 40.0, 90.0}) {
+      for (double speed = 30; speed <= 140; speed += kShortRun ? 44 : 11) {
+        SCOPED_TRACE(std::to_string(at_zero) + " Pa, " + std::to_string(sump) + " C, " +
+                     std::to_string(speed) + " km/h");
+        Scene scene = reference_scene(1, sump);
+        scene.lubricant.limiting_shear_stress_at_zero_pressure = at_zero;
+        PointOptions loose, tight;
+        loose.tolerance = kTolerance;
+        tight.tolerance = 1e-7;
+        const double share = limited_time_share(scene, speed, tight);
+        const double more = limited_time_share(scene, speed, tight, 1 - kTolerance);
+        const double less = limited_time_share(scene, speed, tight, 1 + kTolerance);
+        const double error = kTolerance * share + std::max(more - share, share - less);
+        EXPECT_NEAR(limited_time_share(scene, speed, loose), share, error);
+        if (share < 0.01 || share > 0.99) continue;
+        if (++limited_for_a_time % 5 != 1) continue;
+        loose.method = SteadyStateMethod::kMarch;
+        EXPECT_NEAR(limited_time_share(scene, speed, loose), share, error) << "marched";
+      }
+    }
+  }
+  EXPECT_GT(limited_for_a_time, kShortRun ? 2 : 10);
 }
 
 }  // namespace

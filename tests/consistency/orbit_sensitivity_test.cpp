@@ -140,7 +140,7 @@ struct OrbitOnGrid {
     r.mean_pinion_speed = place.target.mean_pinion_speed;
     const SolvedPieces solved =
         solved_pieces(system, grid, orbit.pieces, *orbit.contacts, contacts.model());
-    ResponseRecord record(1);
+    ResponseRecord record(1, contacts.model());
     record_orbit(system, orbit, solved, record);
     record.fill(orbit.torques, orbit.period, true, r);
     if (!r.inefficiency_rms) return std::nullopt;
