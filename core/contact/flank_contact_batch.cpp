@@ -142,6 +142,7 @@ FlankContactBatch::FlankContactBatch(const FlankContactModel& model, Instruction
   if (!t.shear.newtonian && oil.density_temperature_slope < 0) {
     end_of_density = -oil.density_at_zero_kelvin / oil.density_temperature_slope;
   }
+  t.shear.newtonian = t.shear.newtonian || oil.relaxation_time == 0;
   t.unique_root_temperature = unique_root_temperature(oil, t.shear.newtonian);
   const bool one_equilibrium = t.isothermal || t.unique_root_temperature >= end_of_density;
   if (one_equilibrium) t.unique_root_temperature = kInfinity;
@@ -161,7 +162,6 @@ FlankContactBatch::FlankContactBatch(const FlankContactModel& model, Instruction
   const bool proved = one_equilibrium || t.limited;
   t.can_certify = !p.eq17_atan && !p.eq31_32_logarithm && !p.eq43_44_polynomials &&
                   options.hertz_load == HertzLoad::kFilmLoad && limit_rises && proved &&
-                  (t.shear.newtonian || oil.relaxation_time > 0) &&
                   t.maximum_temperature > t.inlet_temperature + 1 && std::isfinite(t.log_film) &&
                   std::isnormal(std::exp(log_ambient_viscosity(oil, t.inlet_temperature))) &&
                   tabulate_ratio(instruction_set, factor_at(t.maximum_temperature),
