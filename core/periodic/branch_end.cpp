@@ -124,7 +124,9 @@ BranchPoint follow_towards(double speed, const BranchPoint& from, const BranchSo
   while (at.settled && std::abs(left()) > at.longest_step) {
     std::optional<BranchPoint> found;
     for (double step = at.longest_step; !found; step *= 2) {
-      if (step > std::max(at.longest_step, kLongestGap) || step > std::abs(left())) return at;
+      if (step > std::max(at.longest_step, kLongestGap) || step > std::abs(left())) {
+        return end ? at : from;
+      }
       const double next = at.speed * std::exp(std::copysign(step, left()));
       found = solver.by_shooting(next, at);
       if (!found) found = solver.loud(next);

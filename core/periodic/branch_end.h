@@ -55,7 +55,7 @@ bool may_be_branches(const BranchPoint& a, const BranchPoint& b);
 
 /// Follows a branch towards a speed [m/s] by natural-parameter continuation, with steps that no
 /// bifurcation hides in (BranchPoint::longest_step). Returns the last point, from where one step
-/// reaches the speed, or the last one found. Where the branch ends on the way, it continues on that
+/// reaches the speed, or `from` if none is found on the way. Where the branch ends on the way, it continues on that
 /// of the response with contact loss, and `end` is set unless it is already.
 BranchPoint follow_towards(double speed, const BranchPoint& from, const BranchSolver& solver,
                            std::optional<BranchEnd>& end);
