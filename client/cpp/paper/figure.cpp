@@ -30,18 +30,12 @@ const std::vector<PaperFigure>& paper_figures() {
   return figures;
 }
 
-std::string verdict_text(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kHolds:
-      return "holds";
-    case Verdict::kPartly:
-      return "partly";
-    case Verdict::kNot:
-      return "does not hold";
-    case Verdict::kOpen:
-      break;
-  }
-  return "open";
+PaperCurve wide_sweep(bool is_down_sweep, const std::string& gear_set) {
+  PaperCurve out;
+  out.is_down_sweep = is_down_sweep;
+  out.gear_set = gear_set;
+  out.speeds = paper_speeds(170);
+  return out;
 }
 
 double rms_inefficiency(const v1::PointResult& result) { return result.inefficiency_rms_percent(); }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -10,13 +11,41 @@ namespace tribodyn::client {
 
 /// What the corrected model says of a statement of the paper.
 enum class Verdict {
+  // Of a prediction.
   kHolds,
   kPartly,
   kNot,
-  kOpen,  ///< the model cannot decide
+  // Of a measurement: the model may disagree with it, but cannot refute it.
+  kAgrees,
+  kAgreesInPart,
+  kDisagrees,
+  /// The model cannot decide: it was calibrated to the statement, or the statement compares
+  /// measurements that are not at hand.
+  kOpen,
 };
-/// Returns "holds", "partly", "does not hold" or "open".
-std::string verdict_text(Verdict verdict);
+
+/// How a verdict is named and drawn.
+struct VerdictLook {
+  const char* text;
+  const char* style;   ///< class of the style sheet of pages
+  const char* colour;  ///< in pictures
+};
+/// In the order of Verdict.
+inline constexpr std::array<VerdictLook, 7> kVerdictLooks = {
+    {{"holds", "holds", "#0b6b48"},
+     {"partly", "partly", "#8a5a00"},
+     {"does not hold", "does-not-hold", "#a83200"},
+     {"model agrees", "holds", "#0b6b48"},
+     {"model agrees in part", "partly", "#8a5a00"},
+     {"model disagrees", "does-not-hold", "#a83200"},
+     {"open", "open", "#555555"}}};
+constexpr const VerdictLook& verdict_look(Verdict verdict) {
+  return kVerdictLooks[static_cast<std::size_t>(verdict)];
+}
+/// Whether the model contradicts the statement.
+constexpr bool contradicts(Verdict verdict) {
+  return verdict == Verdict::kNot || verdict == Verdict::kDisagrees;
+}
 
 /// A number that a verdict rests on.
 struct Evidence {
@@ -29,7 +58,7 @@ struct Evidence {
 struct Finding {
   std::string statement;  ///< what the paper states
   Verdict verdict;
-  std::string rule;  ///< when it holds or holds partly, and what explains the rest
+  std::string rule;  ///< what the verdict depends on, and what explains the rest
   std::vector<Evidence> evidence;
 };
 
@@ -55,6 +84,15 @@ const std::vector<PaperFigure>& paper_figures();
 std::vector<PaperFigure> rig_figures();           ///< 5, 9 and 14
 std::vector<PaperFigure> dynamics_figures();      ///< 6, 7, 8 and 11
 std::vector<PaperFigure> inefficiency_figures();  ///< 10, 12, 13, 15, 16 and the conclusions
+
+/// Sump temperatures of figures 11 and 12 [C].
+inline constexpr double kSumps[] = {10, 40, 90};
+inline constexpr char kSumpsAreChosen[] =
+    " The paper does not name its three temperatures: 10, 40 and 90 C are this page's choice.";
+
+/// Returns a sweep of lubricant 1 at 40 C that goes to 170 km/h, beyond all speeds at which contact
+/// is lost: a down-sweep from 140 km/h would miss the response with impacts above 118 km/h.
+PaperCurve wide_sweep(bool is_down_sweep, const std::string& gear_set = PaperCurve().gear_set);
 
 /// Figures of a point.
 double rms_inefficiency(const v1::PointResult& result);      ///< [%]

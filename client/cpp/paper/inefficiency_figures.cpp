@@ -99,11 +99,13 @@ std::vector<Finding> findings_of_figure_10(const PaperResults& results) {
                 : thermal.y.back() < thermal.y.front() ? Verdict::kPartly
                                                        : Verdict::kNot,
                 "Holds if the energy mean never rises by more than 3 %; partly if it is lower at "
-                "140 than at 20 km/h. Impacts near the resonance raise the RMS, which the paper "
-                "plots, more than the energy mean.",
+                "140 than at 20 km/h. Impacts near the resonance, and on the way down those above "
+                "80 km/h (figure 6), raise the RMS, which the paper plots, more than the energy "
+                "mean.",
                 {}};
-  add_inefficiencies("thermal", results, fluid_curve(1), {20, 40, 50, 70, 75, 80, 100, 140},
-                     falls.evidence);
+  const std::vector<double> speeds{20, 40, 50, 70, 75, 80, 100, 120, 140};
+  add_inefficiencies("thermal", results, fluid_curve(1), speeds, falls.evidence);
+  add_inefficiencies("thermal, down-sweep", results, wide_sweep(true), speeds, falls.evidence);
   Finding rises{"Without heating, inefficiency rises with speed",
                 largest_fall(isothermal) < 3                 ? Verdict::kHolds
                 : isothermal.y.back() > isothermal.y.front() ? Verdict::kPartly
@@ -157,8 +159,8 @@ std::vector<Evidence> variants_of_figure_10(const PaperResults& results) {
 }
 
 std::vector<PaperCurve> curves_of_figure_10() {
-  std::vector<PaperCurve> out{fluid_curve(1), isothermal_curve(), unlimited_curve(),
-                              unlimited_isothermal_curve()};
+  std::vector<PaperCurve> out{fluid_curve(1), wide_sweep(true), isothermal_curve(),
+                              unlimited_curve(), unlimited_isothermal_curve()};
   for (const TriedVariant& variant : tried_variants()) {
     out.push_back(tried_curve(variant, false));
     out.push_back(tried_curve(variant, true));
@@ -181,7 +183,7 @@ Finding falls_with_sump(const PaperResults& results) {
               {}};
   PaperLine lines[3];
   int i = 0;
-  for (const double sump : {10.0, 40.0, 90.0}) {
+  for (const double sump : kSumps) {
     lines[i] = energy(results, sump_curve(sump));
     add_inefficiencies("sump " + significant(sump) + " C", results, sump_curve(sump),
                        {20, 50, 100, 140}, out.evidence);
@@ -221,7 +223,7 @@ std::vector<Panel> panels_of_figure_12(const PaperResults& results) {
 
 std::vector<Evidence> variants_of_figure_12(const PaperResults& results) {
   std::vector<Evidence> out;
-  for (const double sump : {10.0, 40.0, 90.0}) {
+  for (const double sump : kSumps) {
     add_evidence("sump " + significant(sump) + " C, energy mean", "%",
                  energy(results, heated_sump_curve(sump)), {20, 50, 100, 140}, kSpeedUnit, out);
   }
@@ -239,7 +241,9 @@ std::vector<Finding> findings_of_figure_13(const PaperResults& results) {
   const PaperLine close = combined(third, first, percent_above);
   Finding alike{"Lubricants 1 and 3 result in similar inefficiency, 3 slightly above 1",
                 Verdict::kHolds,
-                "Holds if the RMS of 3 lies above that of 1 by less than 5 % at every speed.",
+                "Holds if the RMS of 3 lies above that of 1 by less than 5 % at every speed. All "
+                "three share one assumed set of shear-thinning parameters: with a set of each, 1 "
+                "and 3 may change places.",
                 {}};
   Finding apart{"Lubricant 2 behaves differently: its inefficiency is clearly higher",
                 Verdict::kHolds,
@@ -324,43 +328,26 @@ std::vector<Panel> panels_of_figure_16(const PaperResults& results) {
   return {panel};
 }
 
-/// Returns fluids 1 to 3 in the order of a figure, the lowest first.
-std::vector<int> ranking(const double (&values)[3]) {
-  std::vector<int> out{1, 2, 3};
-  std::sort(out.begin(), out.end(),
-            [&](int one, int other) { return values[one - 1] < values[other - 1]; });
-  return out;
-}
-
-Finding rigs_rank_as_the_axle(const PaperResults& results) {
-  double film[3], boundary[3], traction[3], loss[3];
-  Finding out{
-      "Rig tests (film, traction) relate directly to performance in the axle",
-      Verdict::kNot,
-      "Holds if the fluids rank by film on glass as by the ratio of boundary friction at 20 "
-      "km/h (the other way round), and by traction at 10 % as by RMS inefficiency at 100 "
-      "km/h; partly if one of both.",
-      {}};
-  for (int i = 0; i < 3; ++i) {
-    const int fluid = i + 1;
+Finding rigs_and_the_axle(const PaperResults& results) {
+  Finding out{"Rig tests (film, traction) relate directly to performance in the axle",
+              Verdict::kOpen,
+              "The paper speaks of measured rigs. Here the same equations compute rig and axle, so "
+              "that equal orders of the fluids on both are no evidence. Of the paper's own data, "
+              "the traction measured on 3 is below that on 1, its predicted inefficiency above.",
+              {}};
+  for (int fluid = 1; fluid <= 3; ++fluid) {
     const std::string name = "fluid " + std::to_string(fluid);
-    film[i] = -results.film(film_rig(fluid)).at(1);
-    boundary[i] = results
-                      .line(fluid_curve(fluid),
-                            [](const v1::PointResult& result) {
-                              return result.boundary_to_viscous_friction_ratio();
-                            })
-                      .at(20);
-    traction[i] = results.traction(traction_rig(fluid), kTractionLoad).at(10);
-    loss[i] = rms(results, fluid_curve(fluid)).at(100);
-    out.evidence.push_back({name, "", "film at 1 m/s, nm", -1e9 * film[i]});
-    out.evidence.push_back({name, "", "boundary over viscous at 20 km/h", boundary[i]});
-    out.evidence.push_back({name, "", "traction at 10 %", traction[i]});
-    out.evidence.push_back({name, "", "RMS inefficiency at 100 km/h, %", loss[i]});
+    const PaperLine boundary = results.line(fluid_curve(fluid), [](const v1::PointResult& result) {
+      return result.boundary_to_viscous_friction_ratio();
+    });
+    out.evidence.push_back(
+        {name, "", "film at 1 m/s, nm", 1e9 * results.film(film_rig(fluid)).at(1)});
+    out.evidence.push_back({name, "", "boundary over viscous at 20 km/h", boundary.at(20)});
+    out.evidence.push_back({name, "", "traction at 10 %",
+                            results.traction(traction_rig(fluid), kTractionLoad).at(10)});
+    out.evidence.push_back(
+        {name, "", "RMS inefficiency at 100 km/h, %", rms(results, fluid_curve(fluid)).at(100)});
   }
-  const int alike = static_cast<int>(ranking(film) == ranking(boundary)) +
-                    static_cast<int>(ranking(traction) == ranking(loss));
-  if (alike > 0) out.verdict = alike == 2 ? Verdict::kHolds : Verdict::kPartly;
   return out;
 }
 
@@ -396,7 +383,7 @@ Finding viscosity_modifiers(const PaperResults& results) {
 
 std::vector<Finding> conclusions(const PaperResults& results) {
   return {boundary_at_low_speed(results), falls_with_sump(results),
-          order_of_magnitude(results),    rigs_rank_as_the_axle(results),
+          order_of_magnitude(results),    rigs_and_the_axle(results),
           little_shear_thinning(results), viscosity_modifiers(results)};
 }
 
@@ -419,7 +406,8 @@ std::vector<PaperFigure> inefficiency_figures() {
        variants_of_figure_10},
       {"12",
        "Inefficiency of lubricant 1 at three sump temperatures",
-       "`tribodyn curve --sumps 10,40,90`, up-sweep; shaded: contact lost at 10 C.",
+       std::string("`tribodyn curve --sumps 10,40,90`, up-sweep; shaded: contact lost at 10 C.") +
+           kSumpsAreChosen,
        {sump_curve(10), sump_curve(40), sump_curve(90), heated_sump_curve(10),
         heated_sump_curve(40), heated_sump_curve(90)},
        {},

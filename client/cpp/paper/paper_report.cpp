@@ -103,9 +103,8 @@ std::string html_table(const std::vector<Evidence>& evidence) {
 }
 
 std::string badge(Verdict verdict) {
-  std::string name = verdict_text(verdict);
-  std::replace(name.begin(), name.end(), ' ', '-');
-  return "<span class=\"verdict " + name + "\">" + verdict_text(verdict) + "</span>";
+  const VerdictLook& look = verdict_look(verdict);
+  return std::string("<span class=\"verdict ") + look.style + "\">" + look.text + "</span>";
 }
 
 /// Returns e.g. "figure-10" for file names and anchors.
@@ -125,35 +124,34 @@ std::string accuracy_text(const PaperFigure& figure, const PaperResults& results
   return out;
 }
 
-const char* colour_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kHolds:
-      return "#0b6b48";
-    case Verdict::kPartly:
-      return "#8a5a00";
-    case Verdict::kNot:
-      return "#a83200";
-    case Verdict::kOpen:
-      break;
-  }
-  return "#555555";
-}
-
 std::string picture_of(const PaperFigure& figure, const std::vector<Finding>& findings,
                        const PaperResults& results) {
   std::vector<Panel> panels = figure.panels(results);
   if (panels.empty()) return "";
-  constexpr double kWidth = 960, kLeft = 70, kTop = 84, kPanelWidth = 690, kPanelHeight = 300,
-                   kPitch = 390, kStatementPitch = 20, kStatementLeft = kLeft + 105;
+  constexpr double kWidth = 960, kLeft = 70, kPanelWidth = 690, kPanelHeight = 300, kPitch = 390,
+                   kHeadingTop = 36, kHeadingSize = 17, kHeadingPitch = 22, kStatementSize = 12.5,
+                   kStatementPitch = 20, kStatementLeft = kLeft + 165;
+  const std::vector<std::string> heading =
+      text_lines(heading_of(figure), kHeadingSize, kWidth - 2 * kLeft);
+  std::vector<std::vector<std::string>> statements;
+  double statements_height = 0;
+  for (const Finding& finding : findings) {
+    statements.push_back(
+        text_lines(finding.statement, kStatementSize, kWidth - kLeft - kStatementLeft));
+    statements_height += kStatementPitch * static_cast<double>(statements.back().size());
+  }
   const std::vector<std::string> below =
       footer_lines({figure.studied, accuracy_text(figure, results)}, kWidth - 2 * kLeft);
+  double top = kHeadingTop + kHeadingPitch * static_cast<double>(heading.size()) + 26;
   const double statements_top =
-      kTop + kPitch * static_cast<double>(panels.size() - 1) + kPanelHeight + 70;
-  const double footer_top =
-      statements_top + kStatementPitch * static_cast<double>(findings.size()) + 8;
+      top + kPitch * static_cast<double>(panels.size() - 1) + kPanelHeight + 70;
+  const double footer_top = statements_top + statements_height + 8;
   Svg svg(kWidth, footer_top + kFooterPitch * static_cast<double>(below.size()));
-  svg.text({kLeft, 36}, heading_of(figure), {17, "start", "#111", true, 0});
-  double top = kTop;
+  double y = kHeadingTop;
+  for (const std::string& line : heading) {
+    svg.text({kLeft, y}, line, {kHeadingSize, "start", "#111", true, 0});
+    y += kHeadingPitch;
+  }
   for (Panel& panel : panels) {
     panel.corner = {kLeft, top};
     panel.width = kPanelWidth;
@@ -161,12 +159,14 @@ std::string picture_of(const PaperFigure& figure, const std::vector<Finding>& fi
     draw_panel(panel, svg);
     top += kPitch;
   }
-  double y = statements_top;
-  for (const Finding& finding : findings) {
-    svg.text({kLeft, y}, verdict_text(finding.verdict),
-             {12.5, "start", colour_of(finding.verdict), true, 0});
-    svg.text({kStatementLeft, y}, finding.statement, {12.5, "start", "#222", false, 0});
-    y += kStatementPitch;
+  y = statements_top;
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    const VerdictLook& look = verdict_look(findings[i].verdict);
+    svg.text({kLeft, y}, look.text, {kStatementSize, "start", look.colour, true, 0});
+    for (const std::string& line : statements[i]) {
+      svg.text({kStatementLeft, y}, line, {kStatementSize, "start", "#222", false, 0});
+      y += kStatementPitch;
+    }
   }
   draw_footer(below, {kLeft, footer_top}, svg);
   return svg.finish();
@@ -189,7 +189,7 @@ std::string summary_table(const std::vector<PaperChapter>& chapters) {
 }
 
 std::string tally(const std::vector<PaperChapter>& chapters) {
-  std::array<int, 4> counts{};
+  std::array<int, kVerdictLooks.size()> counts{};
   for (const PaperChapter& chapter : chapters) {
     for (const Finding& finding : chapter.findings)
       ++counts.at(static_cast<std::size_t>(finding.verdict));
@@ -198,8 +198,7 @@ std::string tally(const std::vector<PaperChapter>& chapters) {
   for (std::size_t i = 0; i < counts.size(); ++i) {
     const int count = counts.at(i);
     if (count == 0) continue;
-    out += (out.empty() ? "" : ", ") + std::to_string(count) + " " +
-           verdict_text(static_cast<Verdict>(i));
+    out += (out.empty() ? "" : ", ") + std::to_string(count) + " " + kVerdictLooks.at(i).text;
   }
   return out;
 }
@@ -222,6 +221,11 @@ std::string simulations_table(const PaperFigure& figure, const PaperResults& res
       differences.push_back(model_options_text(simulation.model_options()));
     }
     if (curve.is_down_sweep) differences.emplace_back("down-sweep");
+    if (!curve.speeds.empty()) {
+      differences.push_back(std::to_string(curve.speeds.size()) + " speeds from " +
+                            significant(curve.speeds.front()) + " to " +
+                            significant(curve.speeds.back()) + " km/h");
+    }
     out += "<tr><td>" + xml_escaped(simulation.name()) + "</td><td>" +
            xml_escaped(simulation.lubricant_revision()) + "</td><td>" +
            xml_escaped(joined(differences, ", ")) + "</td><td class=\"hash\">" +
@@ -303,9 +307,8 @@ std::string paper_text(const std::vector<PaperChapter>& chapters) {
     out += (out.empty() ? "" : "\n") + heading_of(*chapter.figure) + "\n" +
            wrapped(chapter.figure->studied, 0) + "\n";
     for (const Finding& finding : chapter.findings) {
-      const std::string verdict = verdict_text(finding.verdict);
-      out += "  " + verdict + ": " + finding.statement + "\n" + wrapped(finding.rule, 6) +
-             text_table(finding.evidence);
+      out += std::string("  ") + verdict_look(finding.verdict).text + ": " + finding.statement +
+             "\n" + wrapped(finding.rule, 6) + text_table(finding.evidence);
     }
     if (chapter.variants.empty()) continue;
     out += "\n" + wrapped("Variants tried. " + chapter.figure->variants_title + ":", 2) +
@@ -321,8 +324,8 @@ std::string paper_csv(const std::vector<PaperChapter>& chapters) {
       std::vector<Evidence> numbers = finding.evidence;
       if (numbers.empty()) numbers.push_back({"", "", "", 0});
       for (const Evidence& evidence : numbers) {
-        rows.push_back(number_row(*chapter.figure, finding.statement, verdict_text(finding.verdict),
-                                  evidence));
+        rows.push_back(number_row(*chapter.figure, finding.statement,
+                                  verdict_look(finding.verdict).text, evidence));
         if (evidence.quantity.empty()) rows.back().back().second = "";
       }
     }
@@ -342,7 +345,7 @@ std::string paper_json(const std::vector<PaperChapter>& chapters) {
     for (const Finding& finding : chapter.findings) {
       out += (&finding == &chapter.findings.front() ? "\n" : ",\n") +
              ("  {\"statement\": " + quoted_in_json(finding.statement)) +
-             ", \"verdict\": " + quoted_in_json(verdict_text(finding.verdict)) +
+             ", \"verdict\": " + quoted_in_json(verdict_look(finding.verdict).text) +
              ", \"rule\": " + quoted_in_json(finding.rule) +
              ", \"numbers\": " + numbers_json(finding.evidence) + "}";
     }
@@ -358,8 +361,15 @@ std::string paper_page(const std::vector<PaperChapter>& chapters, const PaperRes
                      "version " +
                      results.model_version() +
                      ". Measured points of the paper are not printed as numbers: statements are "
-                     "compared by their words, each by the rule that stands below it. Losses are "
-                     "those of the gear mesh.") +
+                     "compared by their words, each by the rule below it. Losses are those of the "
+                     "gear mesh.") +
+      html_paragraph(
+          "The paper does not print the car, the roughness of the flanks, the shear "
+          "thinning of the lubricants, the mesh data, inertias and damping of the gear "
+          "set, or the range of speeds: they are assumed, or calibrated to statements "
+          "of the paper. The line below a figure names what else was chosen. Curves are "
+          "up-sweeps unless stated otherwise; at some speeds a second response with "
+          "impacts exists (figure 6).") +
       html_paragraph(std::to_string(chapters.size()) +
                      (chapters.size() == 1 ? " chapter: " : " chapters: ") + tally(chapters) +
                      ".") +

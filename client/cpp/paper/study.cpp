@@ -11,22 +11,6 @@
 namespace tribodyn::client {
 namespace {
 
-/// Speeds of the figures [km/h]: close enough around the resonance to find the edges of contact
-/// loss to half a kilometre per hour, and around half of its speed to show the second harmonic.
-std::vector<double> paper_speeds() {
-  std::vector<double> out{20};
-  const auto add = [&out](double last, double step) {
-    while (out.back() < last) out.push_back(out.back() + step);
-  };
-  add(30, 2.5);
-  add(45, 1);
-  add(55, 2.5);
-  add(85, 0.5);
-  add(95, 1);
-  add(140, 2.5);
-  return out;
-}
-
 void switch_on(const std::string& path, v1::ModelOptions& options) {
   google::protobuf::Message* message = &options;
   for (const std::string& name : split(path, '.')) {
@@ -53,6 +37,20 @@ v1::ModelOptions model_options_of(const std::vector<std::string>& switches) {
 }
 
 }  // namespace
+
+std::vector<double> paper_speeds(double last) {
+  std::vector<double> out{20};
+  const auto add = [&out](double end, double step) {
+    while (out.back() < end) out.push_back(out.back() + step);
+  };
+  add(30, 2.5);
+  add(45, 1);
+  add(55, 2.5);
+  add(85, 0.5);
+  add(95, 1);
+  add(last, 2.5);
+  return out;
+}
 
 v1::Simulation simulation_of(const PaperCurve& curve) {
   v1::Simulation out;

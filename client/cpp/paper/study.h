@@ -10,6 +10,11 @@
 
 namespace tribodyn::client {
 
+/// Returns the speeds of a figure from 20 to `last` [km/h]: close enough around the resonance to
+/// find the edges of contact loss to half a kilometre per hour, and around half of its speed to
+/// show the second harmonic.
+std::vector<double> paper_speeds(double last = 140);
+
 /// A curve over speed of a figure of the paper: cruise on a level road with run-in flanks
 /// and the passenger car.
 struct PaperCurve {
@@ -19,7 +24,7 @@ struct PaperCurve {
   std::vector<std::string> switches = {};
   bool is_down_sweep = false;
   std::string gear_set = "reference-axle";
-  /// Speeds [km/h]; empty: 20 to 140, by 0.5 around the resonance and by 1 and 2.5 elsewhere.
+  /// Speeds [km/h]; empty: paper_speeds().
   std::vector<double> speeds = {};
 };
 v1::Simulation simulation_of(const PaperCurve& curve);

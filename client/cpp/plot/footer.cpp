@@ -111,11 +111,10 @@ std::vector<std::string> footer_texts(const std::vector<v1::Simulation>& simulat
 }
 
 std::vector<std::string> footer_lines(const std::vector<std::string>& texts, double width) {
-  const int columns = static_cast<int>(width / text_width("x", kFooterSize));
   std::vector<std::string> lines;
   for (const std::string& text : texts) {
-    for (std::string& line : split(wrapped(text, 0, columns), '\n')) {
-      if (!line.empty()) lines.push_back(std::move(line));
+    for (std::string& line : text_lines(text, kFooterSize, width)) {
+      lines.push_back(std::move(line));
     }
   }
   return lines;

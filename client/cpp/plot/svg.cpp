@@ -181,4 +181,11 @@ std::string xml_escaped(std::string_view text) {
 
 double text_width(std::string_view text, double size) { return 0.56 * size * display_width(text); }
 
+std::vector<std::string> text_lines(std::string_view text, double size, double width) {
+  std::vector<std::string> lines =
+      split(wrapped(text, 0, static_cast<int>(width / text_width("x", size))), '\n');
+  if (!lines.empty()) lines.pop_back();  // behind the last line feed
+  return lines;
+}
+
 }  // namespace tribodyn::client

@@ -61,4 +61,7 @@ std::string legible_on_white(const std::string& colour);
 /// Returns the approximate width of sans-serif text [pixels].
 double text_width(std::string_view text, double size);
 
+/// Breaks the text into lines of at most `width` pixels.
+std::vector<std::string> text_lines(std::string_view text, double size, double width);
+
 }  // namespace tribodyn::client
