@@ -62,7 +62,7 @@ PointResult marched_from(const Scene& scene, const OperatingCondition& condition
 TEST(HardCases, NewtonsMethodDoesNotLeaveTheStartForARemoteAttractor) {
   const Scene scene = with_ripple(2.15);
   for (const double speed : {141.0, 141.5, 142.0, 142.5, 143.25, 144.0, 146.0}) {
-    if (kShortRun && speed != 142) continue;
+    if (!full_run() && speed != 142) continue;
     SCOPED_TRACE(speed);
     const PointResult r = solve_operating_point(scene, cruise(speed), {});
     EXPECT_LT(r.inefficiency_rms.value(), 3);
@@ -127,16 +127,6 @@ TEST(HardCases, ACurveDoesNotDependOnTheNumberOfItsPoints) {
   ASSERT_EQ(narrow.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(wide[i] / narrow[i], 1, 2e-3);
   EXPECT_GT(wide[0], 1.5) << "the doubled response at 120 km/h";
-}
-
-TEST(HardCases, AWeaklyDampedShaftIsAnsweredWithinTheLimitOfWork) {
-  Scene scene = reference_scene();
-  scene.gear_set.dynamics.pinion_shaft_damping *= 0.03;
-  scene.gear_set.dynamics.gear_shaft_damping *= 0.03;
-  const PointResult r = solve_operating_point(scene, cruise(97.6), {});
-  EXPECT_LT(r.statistics.contact_solutions, 2'000'000);
-  const PointResult damped = solve_operating_point(reference_scene(), cruise(97.6), {});
-  EXPECT_NEAR(r.inefficiency_rms.value() / damped.inefficiency_rms.value(), 1, 0.02);
 }
 
 // Two responses of the reference axle: between 65.2 and 71.4 km/h, and between 118 and 149.

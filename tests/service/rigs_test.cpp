@@ -114,14 +114,17 @@ TEST(EvaluateRig, ARefusedConditionIsARefusedRowBesideOthers) {
   evaluation->scene.lubricant = to_core(thick);
   add_rig_condition(request, 38, 10, -50);  // below 230 K
   add_rig_condition(request, 38, 20, -50);
+  add_rig_condition(request, 38, 10, -20);  // not liquid yet
   const v1::EvaluateRigResponse out = evaluate_rig(request, *evaluation, [] { return false; });
   EXPECT_EQ(out.refusal_numbers(2), 0);
   EXPECT_TRUE(std::isfinite(out.traction_coefficient(2)));
   EXPECT_EQ(out.refusal_numbers(4), 1);
   EXPECT_EQ(out.refusal_numbers(5), 1);
   EXPECT_TRUE(std::isnan(out.traction_coefficient(5)));
-  ASSERT_EQ(out.refusals_size(), 1);
+  EXPECT_EQ(out.refusal_numbers(6), 2);
+  ASSERT_EQ(out.refusals_size(), 2);
   EXPECT_EQ(out.refusals(0).reason(), "INVALID_AT_INLET");
+  EXPECT_EQ(out.refusals(1).reason(), "VISCOSITY_OUT_OF_RANGE");
 }
 
 v1::EvaluateRigRequest grid_request() {
