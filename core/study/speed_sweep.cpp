@@ -44,12 +44,10 @@ double longest_step(const std::array<LinearMode, 3>& modes, const GearPairSystem
 
 BranchPoint on_branch(PreparedScene& scene, const PointResult& r) {
   PreparedGearSet& gear_set = scene.gear_set();
-  return {r.vehicle_speed,
-          r.dynamic_transmission_error.maximum - r.dynamic_transmission_error.minimum,
-          r.settled,
-          r.method == SteadyStateMethod::kMarch ? r.statistics.mesh_cycles : 0,
-          carried_from(r),
-          longest_step(gear_set.modes(), gear_set.system(), r)};
+  return {
+      r.vehicle_speed, r.dynamic_transmission_error.maximum - r.dynamic_transmission_error.minimum,
+      r.settled,       r.method == SteadyStateMethod::kMarch ? r.statistics.mesh_cycles : 0,
+      carried_from(r), longest_step(gear_set.modes(), gear_set.system(), r)};
 }
 
 /// Solves between two neighbours of a sweep with the options of the sweep, but loosely and without
@@ -132,7 +130,19 @@ std::vector<SweepPoint> sweep_speed(const Scene& scene, std::vector<double> vehi
                                 next.branch_end);
         point.carried_state = before->state;
       }
-      next.result = solve_prepared_point(*prepared, cruise(speed, ascent_angle), point);
+      const auto solve = [&] {
+        return solve_prepared_point(*prepared, cruise(speed, ascent_angle), point);
+      };
+      try {
+        next.result = solve();
+      } catch (const Refusal&) {
+        // Contacts may be refused on the branch that was followed, and not on that of the point.
+        if (!before || before->speed == out.back().vehicle_speed) throw;
+        before = on_branch(*prepared, *out.back().result);
+        point.carried_state = before->state;
+        next.branch_end.reset();
+        next.result = solve();
+      }
       if (follows) point.carried_state = carried_from(*next.result);
       if (before && !next.branch_end) {
         const BranchPoint after = on_branch(*prepared, *next.result);
