@@ -1,6 +1,5 @@
 #include "server/simulation/campaign_columns.h"
 
-#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -12,11 +11,6 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr char kUsualAxleFigure[] = "inefficiency_energy_mean_percent";
 
-bool has_warning(const PointFigures& figures, const std::string& code) {
-  return std::any_of(figures.warnings.begin(), figures.warnings.end(),
-                     [&](const RangeWarning& each) { return each.code == code; });
-}
-
 void append_axle_figures(const PointFigures& figures, std::vector<double>& out) {
   out.insert(out.end(),
              {figures.pinion_torque, figures.wheel_torque, figures.inefficiency_rms.value_or(kNone),
@@ -24,8 +18,7 @@ void append_axle_figures(const PointFigures& figures, std::vector<double>& out) 
               figures.dte_minimum, figures.dte_maximum, figures.contact_loss ? 1.0 : 0.0,
               figures.settled ? 1.0 : 0.0, static_cast<double>(figures.period_in_mesh_cycles),
               figures.estimated_relative_error.value_or(kNone),
-              static_cast<double>(to_message(figures.model)),
-              has_warning(figures, "RESPONSES_COEXIST") ? 1.0 : 0.0});
+              static_cast<double>(to_message(figures.model))});
 }
 
 void append_axle_contact(const PointFigures& figures, std::vector<double>& out) {
