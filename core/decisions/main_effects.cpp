@@ -1,9 +1,9 @@
 #include "core/decisions/main_effects.h"
 
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
 #include "core/numerics/square.h"
+#include "core/numerics/students_t.h"
 
 namespace tribodyn {
 namespace {
@@ -71,12 +71,6 @@ std::vector<double> relative_variances(const Factors& factors) {
   return out;
 }
 
-double students_quantile(int degrees_of_freedom, double probability) {
-  using Policy = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
-  return quantile(boost::math::students_t_distribution<double, Policy>(degrees_of_freedom),
-                  probability);
-}
-
 }  // namespace
 
 std::optional<MainEffects> main_effects(const Eigen::MatrixXd& columns,
@@ -99,7 +93,7 @@ std::optional<MainEffects> main_effects(const Eigen::MatrixXd& columns,
   out.explained_share = whole > 0 ? 1 - rest.squaredNorm() / whole : 0;
   const std::vector<double> coefficients = solved(factors, parts);
   const std::vector<double> variances = relative_variances(factors);
-  const double reach = students_quantile(out.degrees_of_freedom, 0.5 * (1 + coverage));
+  const double reach = students_t_quantile(out.degrees_of_freedom, 0.5 * (1 + coverage));
   for (std::size_t j = 0; j < factors.size(); ++j) {
     const double error = std::sqrt(variance * variances[j]);
     out.effects[static_cast<std::size_t>(factors.columns[j])] = MainEffect{

@@ -19,6 +19,7 @@ ContactSolver::ContactSolver(const FlankContactBatch& batch, ContactTally& tally
 ContactStatus ContactSolver::solve(const std::array<ContactConditions, kFlankPairs>& conditions,
                                    std::array<ContactFigures, kFlankPairs>& out) {
   if (batch_ != nullptr) solve_together(conditions, out);
+  ++tally_.instants;
   ContactStatus refusal = ContactStatus::kOk;
   for (int k = 0; k < kFlankPairs; ++k) {
     if (!(conditions[k].load > 0)) {
@@ -46,13 +47,16 @@ void ContactSolver::solve_together(const std::array<ContactConditions, kFlankPai
     if (c.load > 0) geometries_.set(k, c.radius_x, c.radius_y);
   }
   std::array<ContactStatus, kFlankPairs> status;
+  std::array<bool, kFlankPairs> is_handed_back;
   FlankContactBatchResults results = solved_.results();
   results.status = status.data();
+  results.by_scalar_kernel = is_handed_back.data();
   batch_->solve(geometries_, 0, kFlankPairs,
                 {load.data(), pinion_x.data(), pinion_y.data(), gear_x.data(), gear_y.data()},
                 results);
   for (int k = 0; k < kFlankPairs; ++k) {
     if (!(load[k] > 0)) continue;
+    tally_.handed_back += is_handed_back[k] ? 1 : 0;
     out[k] = {};
     solved_.copy(k, out[k]);
     out[k].status = status[k];

@@ -18,6 +18,8 @@ struct MarchOptions {
   long maximum_steps = 2000000;  ///< of one run(); beyond it Refusal("WORK_LIMIT")
   /// Asked every few hundred steps; true stops the run with Cancelled. May be empty.
   std::function<bool()> interrupted;
+  /// The same, with Refusal("WORK_LIMIT").
+  std::function<bool()> is_out_of_work;
 };
 
 /// One accepted step with its continuous extension; valid during the callback only.
@@ -66,7 +68,8 @@ struct MarchStep {
 ///   void events(double s, const State& y, std::array<double, kEvents>& g)
 ///       an event happens where g rises through 0; scaled so that 1e-13 is nothing; -1 if none
 ///   void on_event(int index, double s, const State& y)        changes the regime
-///   double next_breakpoint(double s)  first point beyond s where the right-hand side has a kink
+///   double next_breakpoint(double s)  first point beyond s where the right-hand side of the
+///                                     current regime has a kink
 ///   void on_breakpoint(double s)      s was reached
 ///   double scale(int i)               size of component i for the error test; infinity: not tested
 /// and may provide
@@ -93,7 +96,8 @@ class DormandPrinceWithEvents {
     bool towards_corner = false;
     while (s < end) {
       if (++attempts % 256 == 0) {
-        if (attempts > options_.maximum_steps) {
+        if (attempts > options_.maximum_steps ||
+            (options_.is_out_of_work && options_.is_out_of_work())) {
           throw Refusal("WORK_LIMIT", "the march took " + std::to_string(attempts) +
                                           " steps without reaching the end of the mesh cycle");
         }
@@ -147,6 +151,7 @@ class DormandPrinceWithEvents {
         chatter = event_step_ < 1e-12 * h ? chatter + 1 : 0;
         if (chatter > 50) throw Refusal("CHATTER", "contact opens and closes without end");
         system_.on_event(event, s, y);
+        breakpoint = std::min(end, system_.next_breakpoint(s));
         evaluate(s, y, k_[0]);
         towards_corner = false;
       } else {

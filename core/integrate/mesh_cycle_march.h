@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -52,14 +53,14 @@ class MeshCycleSystem {
     for (int i = 0; i < kSize; ++i) {
       scale_[i] = scales.of(system.mesh(), i);
     }
-    piece_ = GradedPhase(0, 0, next_breakpoint(0), takes_load(), gives_load());
+    start_piece(0, 0, takes_load());
   }
 
   /// Mesh phase [cycles] at s, and its inverse, in the present piece.
   double phase(double s) const { return piece_.phase(s); }
   double s_of(double phase) const { return piece_.s_of(phase); }
   ContactRegime regime() const { return regime_; }
-  /// Of the mesh tables.
+  /// Of the mesh tables; of no meaning without a load.
   int interval() const { return interval_; }
 
   void derivative(double s, const State& y, State& dy) {
@@ -112,16 +113,14 @@ class MeshCycleSystem {
     if (gap_events != nullptr && (before.side == 0) != (regime_.side == 0)) {
       gap_events->push_back({at_phase, y[kTime], regime_.side == 0});
     }
-    const bool load_begins = regime_.side == before.side && regime_.loaded;  // from zero
-    piece_ = GradedPhase(s, at_phase, next_breakpoint(s), load_begins, gives_load());
+    if (regime_.loaded) interval_ = system_.mesh().interval_at(std::max(s, at_phase));
+    start_piece(s, at_phase, regime_.side == before.side && regime_.loaded);  // load from zero
   }
 
-  double next_breakpoint(double) const {
-    return static_cast<double>(interval_ + 1) / system_.mesh().intervals();
-  }
+  double next_breakpoint(double) const { return piece_end_; }
   void on_breakpoint(double s) {
     ++interval_;
-    piece_ = GradedPhase(s, s, next_breakpoint(s), takes_load(), gives_load());
+    start_piece(s, s, takes_load());
   }
   double scale(int i) const { return scale_[i]; }
   /// The load of all ends where the event is, like a power: friction goes like W^0.74 there.
@@ -130,6 +129,16 @@ class MeshCycleSystem {
   std::vector<GapEvent>* gap_events = nullptr;
 
  private:
+  /// Up to the next sample of the tables. Without a load there is no friction, and the tables do
+  /// not matter: then to the end of the mesh cycle, once s and phase agree.
+  void start_piece(double s, double phase, bool load_begins) {
+    constexpr double kRounding = 1e-13;
+    const bool has_load = regime_.side != 0 && regime_.loaded;
+    piece_end_ = !has_load && std::abs(s - phase) < kRounding
+                     ? 1
+                     : static_cast<double>(interval_ + 1) / system_.mesh().intervals();
+    piece_ = GradedPhase(s, phase, piece_end_, load_begins, gives_load());
+  }
   bool takes_load() const { return share_is_zero(0); }
   bool gives_load() const { return share_is_zero(1); }
   /// Whether a loaded pair has no load at that end (0 or 1) of the interval but has inside.
@@ -154,6 +163,7 @@ class MeshCycleSystem {
   int interval_ = 0;
   State scale_;
   GradedPhase piece_;
+  double piece_end_ = 1;
   double pinion_speed_ = 0, shaft_speed_ = 0;   ///< in the last evaluation
   ContactStatus refusal_ = ContactStatus::kOk;  ///< of the last evaluation of a state with numbers
   Instant instant_;

@@ -19,9 +19,6 @@ constexpr int kWindow = 8;
 // Number of mesh cycles that are marched before the first extrapolation. With 2 they take 32 % more
 // work, with 24 27 % more.
 constexpr int kFirstCycles = 8;
-// On the largest multiplier, whose finite differences err by 4e-7 in twelve random scenes (see
-// below). A caution for others: with 1e-5 and 3e-3 the marches come out the same.
-constexpr double kStabilityMargin = 3e-4;
 using Vector = Eigen::Matrix<double, kUnknowns, 1>;
 
 /// The period map with its corrections, in scaled unknowns.
@@ -214,7 +211,11 @@ SteadyState solve_steady_state(const PeriodicProblem& problem, ContactSolver& co
   Vector best_image, marched = map.pack(out);
   Extrapolation extrapolation;
   std::vector<Vector> sections;  // of consecutive plain mesh cycles, for finding the period
-  while (out.work.mesh_cycles + period <= options.maximum_mesh_cycles) {
+  const auto may_go_on = [&] {
+    return out.work.mesh_cycles + period <= options.maximum_mesh_cycles &&
+           !(options.is_over && options.is_over());
+  };
+  while (may_go_on()) {
     if (options.progress) {
       const double done = best >= 1 ? 0 : std::log(std::max(best, wanted)) / std::log(wanted);
       reported = std::max(reported, std::clamp(done, 0.0, 0.99));
@@ -239,7 +240,7 @@ SteadyState solve_steady_state(const PeriodicProblem& problem, ContactSolver& co
       if (++confirmed < 2) continue;
       confirmed = 0;
       out.largest_multiplier = map.largest_multiplier(out, period);
-      if (out.largest_multiplier <= 1 + kStabilityMargin) {
+      if (out.largest_multiplier <= 1 + kDoubtOfMarchedMultiplier) {
         out.settled = true;
         // What repeats after 2 or 4 cycles may do so after fewer.
         for (int fewer = 1; fewer < period; ++fewer) {
@@ -290,6 +291,8 @@ SteadyState solve_steady_state(const PeriodicProblem& problem, ContactSolver& co
       ++out.accelerations;
     }
   }
+  // An extrapolation may have led far from any attractor, or close to an orbit that repels.
+  if (!out.settled && plain_left == 0) map.unpack(marched, out);
   out.period = out.settled ? period : 0;
   return out;
 }

@@ -147,6 +147,12 @@ std::vector<OrbitPiece> float_freely(const GearPairSystem& system, const MeshGri
 
 }  // namespace
 
+bool flanks_tap(const MeshData& mesh, double pinion_torque) {
+  const Swing swing = swing_of(mesh);
+  return !(std::abs(pinion_torque) / mesh.mean_pinion_contact_radius() >
+           swing.stiffest * (swing.high - swing.low));
+}
+
 std::optional<MarchState> floating_start(const GearPairSystem& system, const MeshGrid& grid,
                                          double mean_pinion_speed) {
   const std::vector<OrbitPiece> pieces = float_freely(
@@ -161,7 +167,7 @@ std::optional<MarchState> tapping_start(const GearPairSystem& system, const Torq
   const DrivelineDynamics& d = system.dynamics();
   const Swing swing = swing_of(mesh);
   const double force = std::abs(torques.pinion) / mesh.mean_pinion_contact_radius();
-  if (force == 0 || force > swing.stiffest * (swing.high - swing.low)) return std::nullopt;
+  if (force == 0 || !flanks_tap(mesh, torques.pinion)) return std::nullopt;
   const double side = torques.pinion > 0 ? 1 : -1;
   // R_g's ripple lies elsewhere once the gear has turned through half of the backlash: the float is
   // computed anew close to the flanks.

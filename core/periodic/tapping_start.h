@@ -24,6 +24,10 @@ namespace tribodyn {
 std::optional<MarchState> tapping_start(const GearPairSystem& system, const Torques& torques,
                                         const MeshGrid& grid, double mean_pinion_speed);
 
+/// Whether a load is so light that the flanks tap each other: they cannot follow the transmission
+/// error, as the mesh is at its stiffest softer than that swing by that load. True without a load.
+bool flanks_tap(const MeshData& mesh, double pinion_torque);
+
 /// The state at mesh phase 0 of gears that float in the middle of the backlash under no torque.
 /// Returns nullopt if they do not float: too little backlash.
 std::optional<MarchState> floating_start(const GearPairSystem& system, const MeshGrid& grid,

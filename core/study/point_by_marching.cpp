@@ -1,9 +1,8 @@
 #include "core/study/point_by_marching.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <vector>
+#include <limits>
+#include <utility>
 
 #include "core/number_text.h"
 #include "core/periodic/steady_state.h"
@@ -11,241 +10,298 @@
 #include "core/refusal.h"
 #include "core/study/history_sampler.h"
 #include "core/study/point_start.h"
-#include "core/study/response_record.h"
+#include "core/study/rattle_average.h"
+#include "core/study/recorded_march.h"
+#include "core/study/response_warnings.h"
 
 namespace tribodyn {
 namespace {
+
+// Of each limit of work; the rest is for the average, if no period is found.
+constexpr double kShareOfSearch = 0.5;
+
+// Tolerance of the steps of a response without a period, of which only statistics count. At a
+// torque of 0.1 N m the RMS inefficiencies of 8,000 mesh cycles with steps of 1e-7, 1e-5, 1e-4 and
+// 1e-3 agree to 1 %, the error of such an average; at the rippled stiffness of rattle_test.cpp
+// those of 4,000 mesh cycles agree to 1e-4.
+constexpr double kRattleStep = 1e-5;
+
+// Mesh cycles of the search where shooting has found that no response of one or two mesh cycles
+// attracts, or flanks tap: of nine random gear sets and fluids three settle after 24 to 26 all the
+// same, and six do not in 60.
+constexpr int kRattleSearchCycles = 32;
 
 /// How a point is marched.
 struct MarchPlan {
   SectionPoint start;
   int first_period = 1;
-  int maximum_mesh_cycles = 0;               ///< of the search for the steady state
-  std::optional<RangeWarning> why_so_short;  ///< why that is less than the options say
+  int search_cycles = 0;                     ///< mesh cycles of the search for a period at most
+  std::optional<SectionPoint> average_from;  ///< in place of where the search ends
+  bool floats = false;                       ///< no flank ever carries a load
+  std::optional<RangeWarning> why_no_period;
 };
 
-/// Of the march's steps; no looser than the figures' tolerance allows.
-double march_tolerance(const PointOptions& options) {
-  return std::clamp(1e-3 * options.tolerance, 1e-11, options.march_step_tolerance);
+bool is_automatic(const PointOptions& options) {
+  return options.method == SteadyStateMethod::kAutomatic;
 }
 
-/// Right-hand sides that a march takes where it has to follow the mesh through many oscillations in
-/// a mesh cycle: measured between 0.05 and 0.3 rad/s, at steps of 1e-7 and 1e-11.
-double expected_right_hand_sides(double mesh_oscillations, double relative_tolerance) {
-  constexpr double kMeshCycles = 25, kPerOscillation = 17, kOrder = 0.16;
-  return kMeshCycles * kPerOscillation * mesh_oscillations *
-         std::pow(1e-7 / relative_tolerance, kOrder);
+Refusal too_slow_to_march(const PointProblem& problem, const WorkLimit& limit) {
+  const PointOptions& options = problem.options;
+  const double speed = problem.target.mean_pinion_speed;
+  return Refusal(
+      "TOO_SLOW_TO_MARCH",
+      "at a mean pinion speed of " + number_text(speed) + " rad/s the mesh may oscillate " +
+          number_text(mesh_oscillations(problem.system(), speed), 2) +
+          " times in a mesh cycle: the march ended after " + number_text(limit.most_contacts(), 2) +
+          " contact solutions (" +
+          (is_automatic(options)
+               ? std::string("method = AUTOMATIC takes no more; method = MARCH does")
+               : "maximum_mesh_cycles = " + std::to_string(options.maximum_mesh_cycles) +
+                     " allows no more") +
+          "), before there was anything to average. A larger tolerance than " +
+          number_text(options.tolerance) +
+          " may let the quasi-static model answer; model = QUASI_STATIC does whatever its error");
 }
 
-void refuse_what_is_too_slow(const GearPairSystem& system, const OperatingTarget& target,
-                             const PointOptions& options) {
-  constexpr double kMostRightHandSides = 1e6;  // one to two seconds
-  const double oscillations = mesh_oscillations(system, target.mean_pinion_speed);
-  if (!oscillates_too_often(oscillations)) return;
-  const double work = expected_right_hand_sides(oscillations, march_tolerance(options));
-  if (work <= kMostRightHandSides) return;
-  throw Refusal("TOO_SLOW_TO_MARCH",
-                "at a mean pinion speed of " + number_text(target.mean_pinion_speed) +
-                    " rad/s the mesh may oscillate " + number_text(oscillations, 2) +
-                    " times in a mesh cycle: too often for shooting, and a march would take " +
-                    number_text(work, 2) + " right-hand sides (method = AUTOMATIC takes up to " +
-                    number_text(kMostRightHandSides) + "). A larger tolerance than " +
-                    number_text(options.tolerance) +
-                    " may let the quasi-static model answer; model = QUASI_STATIC does whatever "
-                    "its error, and method = MARCH marches however long");
+/// The search takes its share of the limit, and leaves what is to be recorded.
+int most_search_cycles(const PointOptions& options) {
+  return std::max(0, std::min(options.maximum_mesh_cycles - options.recorded_mesh_cycles,
+                              static_cast<int>(kShareOfSearch * options.maximum_mesh_cycles)));
+}
+
+constexpr int kFloatSteps = 96;  // a mesh cycle; 48 do the same at the light points
+
+/// Where flanks that no torque holds together float, if that is prescribed.
+std::optional<SectionPoint> floating_flanks(const PointProblem& problem) {
+  const OperatingTarget& target = problem.target;
+  if (!target.solve_wheel_torque || target.torques.pinion != 0) return std::nullopt;
+  const auto start = floating_start(
+      problem.system(), problem.gear_set.grids().with_steps(kFloatSteps), target.mean_pinion_speed);
+  if (!start) return std::nullopt;
+  return problem.system().at_section(*start, {});
+}
+
+/// Where flanks tap each other under hardly any load.
+std::optional<SectionPoint> tapping_flanks(const PointProblem& problem) {
+  const OperatingTarget& target = problem.target;
+  const auto start =
+      tapping_start(problem.system(), target.torques,
+                    problem.gear_set.grids().with_steps(kFloatSteps), target.mean_pinion_speed);
+  if (!start) return std::nullopt;
+  return problem.system().at_section(*start, target.torques);
 }
 
 MarchPlan plan_march(const PointProblem& problem, PointStart start,
                      const std::optional<CarriedState>& from,
                      const std::optional<SectionPoint>& aperiodic) {
-  // Mesh cycles to leave the response that repels: a guess that no test has contradicted.
-  constexpr int kRattleCycles = 60;
-  // Mesh cycles from a start that is near a response, if there is one: none of the nine light
-  // points of core/README.md that are marched settles in 600 either, for 1.9 times the work.
-  constexpr int kTapCycles = 150;
-  constexpr int kFloatSteps = 96;  // a mesh cycle; 48 do the same at the light points
-  const GearPairSystem& system = problem.system();
-  const OperatingTarget& target = problem.target;
-  const PointOptions& options = problem.options;
+  const bool may_shorten = is_automatic(problem.options);
   MarchPlan out;
-  out.maximum_mesh_cycles = options.maximum_mesh_cycles;
-  const bool may_shorten = options.method == SteadyStateMethod::kAutomatic;
-  if (may_shorten) refuse_what_is_too_slow(system, target, options);
-  if (may_shorten && aperiodic) {
-    out.start = *aperiodic;
-    out.maximum_mesh_cycles = std::min(out.maximum_mesh_cycles, kRattleCycles);
-    out.why_so_short =
-        RangeWarning{"RATTLES",
-                     "responses that repeat after one and two mesh cycles were found, "
-                     "and both repel: the flanks rattle without a period. method = "
-                     "MARCH searches on"};
-    return out;
-  }
-  if (may_shorten && !from && target.solve_wheel_torque && target.torques.pinion == 0) {
-    if (const auto floating = floating_start(
-            system, problem.gear_set.grids().with_steps(kFloatSteps), target.mean_pinion_speed)) {
-      out.start = system.at_section(*floating, {});
-      out.maximum_mesh_cycles = 0;
-      out.why_so_short = RangeWarning{"FLANKS_FLOAT",
-                                      "no pinion torque holds the flanks together: they float in "
-                                      "the backlash, wherever they are, and lose nothing"};
-      return out;
-    }
-  }
+  out.search_cycles = most_search_cycles(problem.options);
   if (from) {
-    out.start = system.at_section(carried_start(system, *from, target), target.torques);
+    out.start = problem.system().at_section(carried_start(problem.system(), *from, problem.target),
+                                            problem.target.torques);
     out.first_period = std::max(1, from->period);
-    return out;
+  } else if (const auto floating = may_shorten ? floating_flanks(problem) : std::nullopt) {
+    out.start = *floating;
+    out.search_cycles = 0;
+    out.floats = true;
+    out.why_no_period = RangeWarning{"FLANKS_FLOAT",
+                                     "no pinion torque holds the flanks together: they float in "
+                                     "the backlash, wherever they are, and lose nothing"};
+  } else if (const auto tapping = may_shorten && start == PointStart::kQuasiStatic
+                                      ? tapping_flanks(problem)
+                                      : std::nullopt) {
+    out.start = *tapping;
+    out.search_cycles = std::min(out.search_cycles, kRattleSearchCycles);
+    out.why_no_period =
+        RangeWarning{"RATTLES",
+                     "under so light a load the flanks tap each other in the backlash, and no "
+                     "period of that was found soon. method = MARCH searches on"};
+  } else {
+    out.start = point_start(problem, start);
   }
-  if (may_shorten && start == PointStart::kQuasiStatic) {
-    if (const auto tapping =
-            tapping_start(system, target.torques, problem.gear_set.grids().with_steps(kFloatSteps),
-                          target.mean_pinion_speed)) {
-      out.start = system.at_section(*tapping, target.torques);
-      out.maximum_mesh_cycles = std::min(out.maximum_mesh_cycles, kTapCycles);
-      out.why_so_short =
-          RangeWarning{"RATTLES",
-                       "under so light a load the flanks tap each other in the backlash, "
-                       "and no period of that was found soon. method = MARCH searches "
-                       "on"};
-      return out;
-    }
+  if (may_shorten && aperiodic) {
+    out.search_cycles = std::min(out.search_cycles, kRattleSearchCycles);
+    out.average_from = aperiodic;
+    out.why_no_period =
+        RangeWarning{"RATTLES",
+                     "responses that repeat after one and two mesh cycles were found, and both "
+                     "repel: the flanks rattle without a period. method = MARCH searches on"};
   }
-  out.start = point_start(problem, start);
   return out;
 }
 
-/// Marches a steady state once more over `cycles` mesh cycles and records it; goes on beyond them
-/// if the history is longer. Returns the regime at the end of the record. Throws as
-/// march_mesh_cycle does, and Cancelled when `progress` returns false.
-ContactRegime record_response(const GearPairSystem& system, ContactSolver& contacts,
-                              const SteadyState& steady, int cycles, const MarchOptions& options,
-                              const MarchScales& scales, ResponseRecord& record,
-                              HistorySampler& history, SolverWork& work,
-                              const std::function<bool(double)>& progress) {
-  using Phases = MeshCycleSystem<true>;
-  constexpr int kSize = Phases::kSize;
-  Phases::State y{};
-  std::copy(steady.state.begin(), steady.state.end(), y.begin());
-  y[kTime] = y[kLossWork] = y[kLossShareSquared] = 0;
-  ContactRegime regime = steady.regime, end_regime = regime;
-  record.starts_in_gap = regime.side == 0;
-
-  std::array<Instant, ResponseRecord::kSamples> samples;
-  int cycle = 0;
-  bool recording = true;
-  const Phases* place = nullptr;  // of the cycle that is marched
-  const auto on_step = [&](const MarchStep<kSize>& step) {
-    // Evaluates between the march's own evaluations.
-    const auto evaluate = [&](double phase, const Phases::State& at, Instant& out) {
-      system.evaluate(phase, place->interval(), place->regime(), at.data(), contacts, out);
-    };
-    if (recording) {
-      for (int i = 0; i < ResponseRecord::kSamples; ++i) {
-        const double theta = static_cast<double>(i) / (ResponseRecord::kSamples - 1);
-        const auto at = i == 0                              ? step.from
-                        : i + 1 == ResponseRecord::kSamples ? step.to
-                                                            : step.at(theta);
-        evaluate(place->phase(step.start + theta * step.length), at, samples[i]);
-      }
-      record.add_step(samples, step.to[kTime] - step.from[kTime]);
-    }
-    const double end = place->phase(step.start + step.length);
-    while (history.wanted() && history.next_phase() < cycle + end) {
-      const double inside = history.next_phase() - cycle;
-      const double theta = (place->s_of(inside) - step.start) / step.length;
-      const auto at = step.at(std::clamp(theta, 0.0, 1.0));
-      evaluate(inside, at, samples[0]);
-      history.add(cycle + inside, at.data(), samples[0], steady.torques);
-    }
-  };
-  for (; cycle < cycles || history.wanted(); ++cycle) {
-    if (progress && !progress(1)) throw Cancelled();
-    Phases phases(system, steady.torques, scales, regime, contacts);
-    place = &phases;
-    std::vector<GapEvent> events;
-    phases.gap_events = &events;
-    recording = cycle < cycles;
-    DormandPrinceWithEvents<Phases> march(phases, options);
-    double phase = 0;
-    march.run(phase, y, 1.0, on_step);
-    regime = phases.regime();
-    work += march.work();
-    ++work.mesh_cycles;
-    if (recording) {
-      for (GapEvent event : events) {
-        event.phase += cycle;
-        record.gap_events.push_back(event);
-      }
-    }
-    if (cycle + 1 == cycles) {
-      std::copy(y.begin(), y.end(), record.integrals.begin());
-      end_regime = regime;
+/// Marches one point: in search of a period, and then over what is recorded.
+class MarchedPoint {
+ public:
+  /// Keeps the references.
+  MarchedPoint(const PointProblem& problem, const HistoryRequest& history)
+      : problem_(problem),
+        options_(problem.options),
+        system_(problem.system()),
+        contacts_(march_step_tolerance(options_) >= kAccuracyOfBatch
+                      ? ContactSolver(problem.contacts, problem.tally)
+                      : ContactSolver(problem.contacts.model(), problem.tally)),
+        limit_(problem.tally, most_contacts_of_march(options_)),
+        history_(history),
+        out_(empty_result(problem.target, PointModel::kFull)) {
+    steps_.relative_tolerance = march_step_tolerance(options_);
+    steps_.maximum_steps = std::numeric_limits<long>::max();  // the limit of work ends a run
+    if (options_.progress) {
+      steps_.interrupted = [this] { return !options_.progress(reported_); };
     }
   }
-  return end_regime;
-}
+  MarchedPoint(const MarchedPoint&) = delete;
+  MarchedPoint& operator=(const MarchedPoint&) = delete;
+
+  PointResult solve(const MarchPlan& plan) {
+    try {
+      const SteadyState steady = search(plan);
+      static_cast<SolverWork&>(out_.statistics) = steady.work;
+      out_.statistics.accelerations = steady.accelerations;
+      out_.statistics.periodicity_defect = steady.defect;
+      if (plan.floats) {
+        out_.recorded_mesh_cycles =
+            std::min(options_.recorded_mesh_cycles, options_.maximum_mesh_cycles);
+        record(plan.start);
+      } else if (steady.settled) {
+        describe(steady);
+        record(steady);
+      } else {
+        average(plan.average_from ? *plan.average_from : steady);
+      }
+    } catch (const Refusal& refusal) {
+      if (refusal.reason() != "WORK_LIMIT") throw;
+      throw too_slow_to_march(problem_, limit_);
+    }
+    out_.statistics.contact_solutions = problem_.tally.solutions;
+    out_.history = history_.take();
+    if (plan.why_no_period && !out_.settled) out_.warnings.push_back(*plan.why_no_period);
+    return std::move(out_);
+  }
+
+ private:
+  static constexpr double kAccuracyOfBatch = 1e-9;  // contacts solved together agree to 1e-10
+
+  MarchOptions steps_within_the_limit() const {
+    MarchOptions out = steps_;
+    out.is_out_of_work = [this] { return limit_.is_spent(); };
+    return out;
+  }
+
+  SteadyState search(const MarchPlan& plan) {
+    SteadyStateOptions search;
+    search.first_period = plan.first_period;
+    search.march = steps_within_the_limit();
+    search.maximum_mesh_cycles = plan.search_cycles;
+    search.is_over = [this] { return limit_.spent_share() >= kShareOfSearch; };
+    if (options_.progress) search.progress = [this](double fraction) { return report(fraction); };
+    const PeriodicProblem periodic = problem_.periodic(march_settling_tolerance(options_));
+    return solve_steady_state(periodic, contacts_, plan.start, search);
+  }
+
+  /// Sets what follows from the search for a steady state.
+  void describe(const SteadyState& steady) {
+    out_.settled = true;
+    // A heuristic bound: measured errors are about a tenth of it.
+    out_.estimated_relative_error =
+        3 * march_settling_tolerance(options_) + 300 * steps_.relative_tolerance;
+    out_.period_in_mesh_cycles = out_.recorded_mesh_cycles = steady.period;
+    out_.statistics.largest_multiplier = steady.largest_multiplier;
+    if (auto warning =
+            barely_attracts_warning(steady.largest_multiplier, kDoubtOfMarchedMultiplier)) {
+      out_.warnings.push_back(*std::move(warning));
+    }
+  }
+
+  /// Records `recorded_mesh_cycles` of the result, and the history.
+  void record(const SectionPoint& start) {
+    const MarchScales scales = scales_of(start);
+    ResponseRecord record(scales.torque / system_.mesh().mean_pinion_contact_radius(),
+                          problem_.contacts.model());
+    // A speed that is wrong within its tolerance counts I omega times in the energy balance.
+    MarchOptions sharper = steps_;
+    sharper.relative_tolerance = std::max(0.01 * steps_.relative_tolerance, 1e-12);
+    RecordedMarch march(system_, contacts_, scales, sharper, start, ExtremesPerStep::kOfFive);
+    for (int i = 0; i < out_.recorded_mesh_cycles; ++i) add_mesh_cycle(march, {&record, &history_});
+    const SectionPoint end = march.point();
+    while (history_.wanted()) add_mesh_cycle(march, {nullptr, &history_});
+    record.fill(start.torques, out_.recorded_mesh_cycles, out_.settled, out_);
+    out_.power_balance.stored = system_.stored_energy(0, end.regime, end.state.data()) -
+                                system_.stored_energy(0, start.regime, start.state.data());
+    out_.section_state = system_.to_section(start.state.data());
+  }
+
+  /// Averages a response without a period, and records the history that follows.
+  void average(const SectionPoint& start) {
+    RattleOptions rattle;
+    rattle.march = steps_within_the_limit();
+    rattle.march.relative_tolerance =
+        std::max(steps_.relative_tolerance, std::min(kRattleStep, 1e-2 * options_.tolerance));
+    rattle.tolerance = options_.tolerance;
+    rattle.least_mesh_cycles = options_.recorded_mesh_cycles;
+    rattle.most_mesh_cycles =
+        std::max(1, options_.maximum_mesh_cycles - static_cast<int>(out_.statistics.mesh_cycles));
+    if (options_.progress) rattle.progress = [this](double fraction) { return report(fraction); };
+    const RattleAverage average =
+        average_rattle(problem_, contacts_, start, rattle, limit_, out_.statistics);
+    out_.recorded_mesh_cycles = average.mesh_cycles;
+    out_.estimated_relative_error = average.relative_error;
+    average.record.fill(average.torques, average.mesh_cycles, false, out_);
+    out_.power_balance.input = average.input;
+    out_.power_balance.output = average.output;
+    out_.power_balance.stored = average.stored;
+    out_.section_state = system_.to_section(average.end.state.data());
+    const MarchScales scales = scales_of(average.end);
+    RecordedMarch march(system_, contacts_, scales, steps_, average.end, ExtremesPerStep::kOfFive);
+    while (history_.wanted()) add_mesh_cycle(march, {nullptr, &history_});
+  }
+
+  void add_mesh_cycle(RecordedMarch& march, const MarchRecorders& recorders) {
+    if (!report(1)) throw Cancelled();
+    march.add_mesh_cycle(recorders, out_.statistics);
+  }
+
+  bool report(double fraction) {
+    reported_ = std::max(reported_, fraction);
+    return !options_.progress || options_.progress(reported_);
+  }
+
+  MarchScales scales_of(const SectionPoint& at) const {
+    return march_scales(system_, at.torques, problem_.target.mean_pinion_speed);
+  }
+
+  const PointProblem& problem_;
+  const PointOptions& options_;
+  const GearPairSystem& system_;
+  ContactSolver contacts_;
+  WorkLimit limit_;
+  HistorySampler history_;
+  PointResult out_;
+  MarchOptions steps_;  // without a limit of work
+  double reported_ = 0;
+};
 
 }  // namespace
 
+double march_step_tolerance(const PointOptions& options) {
+  return std::clamp(1e-3 * options.tolerance, 1e-11, options.march_step_tolerance);
+}
+
+double march_settling_tolerance(const PointOptions& options) {
+  return std::min(0.1 * options.tolerance, options.march_settling_tolerance);
+}
+
+double most_contacts_of_march(const PointOptions& options) {
+  return is_automatic(options) ? kMostContactsOfAutomaticMarch
+                               : kMostContactsPerMeshCycle * options.maximum_mesh_cycles;
+}
+
 PointResult solve_by_marching(const PointProblem& problem, PointStart start,
                               const std::optional<CarriedState>& from,
-                              const HistoryRequest& history_request,
+                              const HistoryRequest& history,
                               const std::optional<SectionPoint>& aperiodic) {
-  constexpr double kAccuracyOfBatch = 1e-9;  // contacts solved together agree to 1e-10
-  const GearPairSystem& system = problem.system();
-  const OperatingTarget& target = problem.target;
-  const PointOptions& options = problem.options;
-  ContactSolver contacts = march_tolerance(options) >= kAccuracyOfBatch
-                               ? ContactSolver(problem.contacts, problem.tally)
-                               : ContactSolver(problem.contacts.model(), problem.tally);
-  const MarchPlan plan = plan_march(problem, start, from, aperiodic);
-  const PeriodicProblem periodic =
-      problem.periodic(std::min(0.1 * options.tolerance, options.march_settling_tolerance));
-  SteadyStateOptions march;
-  march.first_period = plan.first_period;
-  march.march.relative_tolerance = march_tolerance(options);
-  march.maximum_mesh_cycles = plan.maximum_mesh_cycles;
-  double reported = 0;
-  if (options.progress) {
-    march.progress = [&](double fraction) {
-      reported = fraction;
-      return options.progress(fraction);
-    };
-    march.march.interrupted = [&] { return !options.progress(reported); };
-  }
-  const SteadyState steady = solve_steady_state(periodic, contacts, plan.start, march);
-
-  PointResult out = empty_result(target, PointModel::kFull);
-  out.settled = steady.settled;
-  // Of both by experience: their errors are some ten times smaller.
-  if (steady.settled) {
-    out.estimated_relative_error = 3 * periodic.tolerance + 300 * march.march.relative_tolerance;
-  }
-  out.period_in_mesh_cycles = steady.period;
-  static_cast<SolverWork&>(out.statistics) = steady.work;
-  out.statistics.accelerations = steady.accelerations;
-  out.statistics.periodicity_defect = steady.defect;
-  out.statistics.largest_multiplier = steady.largest_multiplier;
-  out.recorded_mesh_cycles = steady.settled ? steady.period : options.recorded_mesh_cycles;
-  const MarchScales scales = march_scales(system, steady.torques, target.mean_pinion_speed);
-  ResponseRecord record(scales.torque / system.mesh().mean_pinion_contact_radius(),
-                        problem.contacts.model());
-  HistorySampler history(history_request);
-  // A speed that is wrong within its tolerance counts I omega times in the energy balance.
-  MarchOptions sharper = march.march;
-  sharper.relative_tolerance = std::max(0.01 * march.march.relative_tolerance, 1e-12);
-  const ContactRegime end_regime =
-      record_response(system, contacts, steady, out.recorded_mesh_cycles, sharper, scales, record,
-                      history, out.statistics, options.progress);
-  out.statistics.contact_solutions = problem.tally.solutions;
-  record.fill(steady.torques, out.recorded_mesh_cycles, steady.settled, out);
-  out.power_balance.stored = system.stored_energy(0, end_regime, record.integrals.data()) -
-                             system.stored_energy(0, steady.regime, steady.state.data());
-  out.section_state = system.to_section(steady.state.data());
-  out.history = history.take();
-  if (plan.why_so_short && !steady.settled) out.warnings.push_back(*plan.why_so_short);
-  return out;
+  return MarchedPoint(problem, history).solve(plan_march(problem, start, from, aperiodic));
 }
 
 }  // namespace tribodyn

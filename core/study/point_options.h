@@ -64,9 +64,14 @@ struct PointOptions {
   double march_step_tolerance = 1e-7;  ///< relative error of each step of a march [1e-11, 1e-3]
   /// Relative change of a marched response per period that counts as settled.
   double march_settling_tolerance = 1e-6;
-  int maximum_mesh_cycles = 4000;  ///< work limit of the search for the steady state
-  int recorded_mesh_cycles = 50;   ///< averaged when no period is found (the paper's 50)
-  HistoryRequest history;          ///< empty: none computed
+  /// Work limit of a march: transient, search for a period and average together. What measures the
+  /// multipliers of the response found, the record of its period and the history come on top.
+  /// Contact solutions have a limit too: see point_by_marching.h.
+  int maximum_mesh_cycles = 4000;
+  /// Averaged at least when no period is found (the paper's 50): more until the error of the
+  /// average is within `tolerance` or a limit of work is reached.
+  int recorded_mesh_cycles = 50;
+  HistoryRequest history;  ///< empty: none computed
   /// Also differentiates the figures by all scalar parameters (PointResult::sensitivities). The
   /// full model answers then; a point that is not found by shooting has none and says so
   /// (NO_SENSITIVITIES).

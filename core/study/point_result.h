@@ -31,8 +31,9 @@ struct FlankLoss {
 };
 
 struct SolverStatistics : SolverWork {
-  long accelerations = 0;         ///< accepted extrapolations towards the steady state
-  double periodicity_defect = 0;  ///< relative change of the section state over the last period
+  long accelerations = 0;  ///< accepted extrapolations towards the steady state
+  /// Relative change of the section state over the last period; 0 if no period was searched for.
+  double periodicity_defect = 0;
   double largest_multiplier = 0;  ///< Floquet, modulus; below 1: the response is attracting
   /// At which the slowest disturbance dies out: like e^(-rate t); 0: no multiplier is known [1/s].
   /// -ln(multiplier) over the period, and the multiplier is good to 3e-3 (1e-4 where it is nearest
@@ -117,14 +118,18 @@ struct PointResult {
   PointModel model = PointModel::kFull;
   SteadyStateMethod method = SteadyStateMethod::kMarch;
   bool settled = false;
-  int period_in_mesh_cycles = 0;  ///< 0: none found; results are then averages over the record
+  int period_in_mesh_cycles = 0;  ///< 0: none found; means are then averages over the record
   int recorded_mesh_cycles = 0;
-  std::optional<double> estimated_relative_error;  ///< absent: not estimated
+  /// Of both inefficiencies and torque; of a settled response, and by the quasi-static model, also
+  /// of the extremes of the transmission error. Of a response without a period it is half of the
+  /// width of the 95 % interval of its averages (rattle_average.h), and the extremes, which are
+  /// those over the record and grow with it, have no error. Absent: not estimated.
+  std::optional<double> estimated_relative_error;
   SolverStatistics statistics;
   PowerBalance power_balance;
   std::optional<CoexistingResponse> coexisting_response;
   std::vector<RangeWarning> warnings;
-  SectionState section_state;  ///< the steady state at mesh phase 0
+  SectionState section_state;  ///< at mesh phase 0; without a period: at the end of the record
   History history;
   std::optional<PointSensitivities> sensitivities;  ///< if requested and found
 };

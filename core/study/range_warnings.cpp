@@ -55,7 +55,11 @@ std::vector<RangeWarning> range_warnings(const Scene& scene, const PointResult& 
     warn("NOT_SETTLED", "no period of 1 to 4 mesh cycles settled within " +
                             std::to_string(r.statistics.mesh_cycles) +
                             " mesh cycles: the figures are averages over " +
-                            std::to_string(r.recorded_mesh_cycles) + " recorded cycles");
+                            std::to_string(r.recorded_mesh_cycles) + " recorded cycles, " +
+                            (r.estimated_relative_error
+                                 ? "with a probability of 95 % to within " +
+                                       number_text(100 * *r.estimated_relative_error, 2) + " %"
+                                 : "too few to estimate their error"));
   } else if (r.period_in_mesh_cycles > 1) {
     warn("PERIOD",
          "the response repeats after " + std::to_string(r.period_in_mesh_cycles) + " mesh cycles");

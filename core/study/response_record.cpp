@@ -154,6 +154,21 @@ void ResponseRecord::add_flank(std::span<const Instant, kCount> instants, int k)
 template void ResponseRecord::add(std::span<const Instant, kSamples> instants, double duration);
 template void ResponseRecord::add(std::span<const Instant, 3> instants, double duration);
 
+void ResponseRecord::append(const ResponseRecord& next, double cycles) {
+  for (GapEvent event : next.gap_events) {
+    event.phase += cycles;
+    event.time += integrals[kTime];
+    gap_events.push_back(event);
+  }
+  for (std::size_t i = 0; i < integrals.size(); ++i) integrals[i] += next.integrals[i];
+  limited_centre_time_ += next.limited_centre_time_;
+  for (const auto range : {&ResponseRecord::transmission_error_, &ResponseRecord::mesh_force_,
+                           &ResponseRecord::pinion_friction_, &ResponseRecord::gear_friction_}) {
+    (this->*range).add(next.*range);
+  }
+  for (std::size_t c = 0; c < contact_.size(); ++c) contact_[c].add(next.contact_[c]);
+}
+
 void ResponseRecord::set_transmission_error_range(double minimum, double maximum) {
   transmission_error_ = {minimum, maximum};
 }

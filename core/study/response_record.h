@@ -32,6 +32,8 @@ class ResponseRecord {
   /// Start, middle and end of a smooth piece.
   void add_piece(std::span<const Instant, 3> instants, double duration) { add(instants, duration); }
   void set_transmission_error_range(double minimum, double maximum);
+  /// Appends what was recorded after these mesh cycles, from its own zero of phase and time.
+  void append(const ResponseRecord& next, double cycles);
 
   Integrals integrals{};
   std::vector<GapEvent> gap_events;

@@ -1,18 +1,27 @@
 #include "core/study/response_warnings.h"
 
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include "core/number_text.h"
 
 namespace tribodyn {
 
+std::optional<RangeWarning> barely_attracts_warning(double multiplier, double doubt) {
+  if (!(std::abs(1 - multiplier) <= doubt)) return std::nullopt;
+  return RangeWarning{
+      "BARELY_ATTRACTS",
+      "the largest Floquet multiplier, " + number_text(multiplier, 6) +
+          ", is within its error of 1: disturbances hardly die out, or hardly grow"};
+}
+
 std::vector<RangeWarning> orbit_warnings(const PeriodicOrbit& orbit) {
   std::vector<RangeWarning> out;
   if (orbit.barely_attracts) {
-    out.push_back({"BARELY_ATTRACTS",
-                   "the largest Floquet multiplier, " +
-                       number_text(orbit.multiplier_with_friction.value_or(1), 6) +
-                       ", is within its error of 1: disturbances hardly die out, or hardly grow"});
+    constexpr double kAnyDoubt = std::numeric_limits<double>::infinity();
+    out.push_back(
+        barely_attracts_warning(orbit.multiplier_with_friction.value_or(1), kAnyDoubt).value());
   }
   if (orbit.is_tapping) {
     out.push_back({"FLANKS_TAP",

@@ -8,6 +8,10 @@
 
 namespace tribodyn {
 
+/// BARELY_ATTRACTS, if the modulus of the largest Floquet multiplier is within `doubt` of 1: the
+/// response repeats, but whether disturbances die out is not certain. Absent otherwise.
+std::optional<RangeWarning> barely_attracts_warning(double multiplier, double doubt);
+
 /// What an orbit says of itself: that it barely attracts, or that flanks tap each other under
 /// hardly any load.
 std::vector<RangeWarning> orbit_warnings(const PeriodicOrbit& orbit);

@@ -30,6 +30,10 @@ struct SampledRange {
     const double beyond = 0.25 * (highest - lowest);  // at most
     if (!(lowest - beyond >= low && highest + beyond <= high)) add_vertices(samples);
   }
+  void add(const SampledRange& other) {
+    low = std::min(low, other.low);
+    high = std::max(high, other.high);
+  }
   /// 0 where nothing was added.
   Extremes with_mean(double mean) const {
     return low <= high ? Extremes{low, mean, high} : Extremes{0, mean, 0};

@@ -68,7 +68,7 @@ NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
           .client = call.client,
           .principal = payer(call),
           .scheduling_class = request.scheduling_class(),
-          .cost_seconds = estimate_cost(inputs.effective).processor_seconds(),
+          .cost_seconds = estimate_cost(inputs).processor_seconds(),
           .labels = std::move(labels),
           .revisions = {effective.lubricant_revision(), effective.gear_set_revision(),
                         effective.surface_revision(), effective.vehicle_revision()}};
@@ -81,7 +81,7 @@ v1::Simulation preview(const SimulationInputs& inputs, const NewSimulation& simu
   out.set_state(v1::Simulation::QUEUED);
   out.set_input_hash(simulation.key.input_hash);
   out.set_canonical_inputs(canonical_inputs(inputs));
-  *out.mutable_cost_estimate() = estimate_cost(inputs.effective);
+  *out.mutable_cost_estimate() = estimate_cost(inputs);
   if (simulation.deadline_time)
     *out.mutable_deadline_time() = timestamp_of(*simulation.deadline_time);
   return out;

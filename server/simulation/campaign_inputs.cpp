@@ -444,13 +444,7 @@ v1::CostEstimate estimate_cost(const CampaignInputs& inputs) {
     return estimate_rig_cost(inputs.points.candidates, inputs.rig->groups.size(),
                              inputs.points.conditions);
   }
-  std::vector<double> speeds;
-  for (const v1::PointCondition& each : inputs.requested.conditions()) {
-    speeds.push_back(each.speed_kilometres_per_hour());
-  }
-  return estimate_screening_cost(
-      inputs.points.base.effective, inputs.points.candidates, speeds,
-      {.contact = inputs.points.with_contact, .elasticities = !inputs.points.elasticities.empty()});
+  return estimate_screening_cost(inputs.points);
 }
 
 }  // namespace tribodyn::server

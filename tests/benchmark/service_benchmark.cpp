@@ -1276,7 +1276,7 @@ void measure_estimates(std::vector<Measurement>& out) {
       compute(task, {}, gear_sets, [](double, const StageText&) { return true; });
       times.push_back(seconds_since(begin));
     }
-    const double ratio = median(times) / estimate_cost(inputs->effective).processor_seconds();
+    const double ratio = median(times) / estimate_cost(*inputs).processor_seconds();
     worst = std::max({worst, ratio, 1 / ratio});
     out.push_back({fmt::format("time_over_estimate_of_{}", name), ratio, "-", {}});
   }

@@ -82,13 +82,17 @@ void expect_sound(const Scene& scene, const PointResult& r, const PointOptions& 
   // Each step rounds the speeds, and there is one at least in every interval of the tables.
   const double rounding = std::numeric_limits<double>::epsilon() * kinetic_energy(scene, r) *
                           r.recorded_mesh_cycles * MeshData(scene.gear_set).intervals();
+  // Of a response without a period the steps are a thousand times less accurate.
+  const double marched_gap = r.settled ? 1e-8 : 1e-6;
   EXPECT_NEAR(
       b.input - b.output - b.friction - b.shaft_damping - b.mesh_damping - b.stored - b.parametric,
-      0, (shot ? 3 * r.estimated_relative_error.value() : 1e-8) * flow + rounding);
+      0, (shot ? 3 * r.estimated_relative_error.value() : marched_gap) * flow + rounding);
   // A few periods may be marched beyond the limit: multipliers, probes of the period, the record.
   // Newton's steps march some hundred in hard cases.
   EXPECT_LE(r.statistics.mesh_cycles,
-            options.maximum_mesh_cycles + (shot ? 500 : 50) + r.recorded_mesh_cycles);
+            options.maximum_mesh_cycles + (shot        ? 500 + r.recorded_mesh_cycles
+                                           : r.settled ? 50 + r.recorded_mesh_cycles
+                                                       : 0));
 }
 
 /// The march from where shooting ended must stay there and find what it found; what a cheaper model
@@ -574,7 +578,7 @@ TEST(HardPoints, RandomGearSetsAndFluids) {
   RecordProperty("seed", std::to_string(seed));
   std::mt19937_64 random(seed);
   const int count = full_run() ? 1000 : kShortRun ? 5 : 25;
-  int right = 0, above = 0, wrong = 0, vanished = 0, marched = 0, picard_error = 0, refused = 0,
+  int right = 0, above = 0, wrong = 0, vanished = 0, marched = 0, unsettled = 0, refused = 0,
       untold = 0;
   for (int i = 0; i < count; ++i) {
     const WildPlace place = wild_place(random);
@@ -586,8 +590,7 @@ TEST(HardPoints, RandomGearSetsAndFluids) {
       const PointResult r = solve_operating_point(place.scene, place.condition, options);
       expect_sound(place.scene, r, options);
       if (!r.settled) {
-        ++picard_error;
-        EXPECT_FALSE(r.estimated_relative_error.has_value());
+        ++unsettled;
         continue;
       }
       const bool cheaper = r.model != PointModel::kFull;
@@ -623,7 +626,7 @@ TEST(HardPoints, RandomGearSetsAndFluids) {
     }
   }
   std::cout << count << " scenes: " << right << " right by the march, " << above
-            << " err more than estimated, " << marched << " marched, " << picard_error
+            << " err more than estimated, " << marched << " marched, " << unsettled
             << " do not settle and say so, " << refused << " refused, " << untold
             << " of which the march tells nothing\n";
   // 1 % of many; a few scenes scatter.

@@ -268,12 +268,12 @@ TEST(Sensitivities, ComeWithAPointIfAskedForAndCountAsAnotherInput) {
     return read_simulation(request, seed_lookup(), "", violations).value();
   };
   const std::string plain = input_hash(inputs());
-  const double seconds = estimate_cost(inputs().effective).processor_seconds();
+  const double seconds = estimate_cost(inputs()).processor_seconds();
   request.mutable_operating_point()->set_sensitivities(false);
   EXPECT_EQ(input_hash(inputs()), plain);
   request.mutable_operating_point()->set_sensitivities(true);
   EXPECT_NE(input_hash(inputs()), plain);
-  EXPECT_GT(estimate_cost(inputs().effective).processor_seconds(), seconds);
+  EXPECT_GT(estimate_cost(inputs()).processor_seconds(), seconds);
   const PointStudy point = std::get<PointStudy>(study(inputs()));
   const v1::CurvePoint result =
       to_curve_point(solve_operating_point(scene(inputs()), point.condition, point.options));
@@ -317,8 +317,8 @@ TEST(Sensitivities, OfACurveCountAsAnotherInputAndChangeNothingElse) {
   without.mutable_inefficiency_curve()->set_sensitivities(false);
   EXPECT_EQ(input_hash(inputs_for(without)), input_hash(inputs_for(plain)));
   EXPECT_NE(input_hash(inputs_for(with)), input_hash(inputs_for(plain)));
-  EXPECT_GT(estimate_cost(inputs_for(with).effective).processor_seconds(),
-            estimate_cost(inputs_for(plain).effective).processor_seconds());
+  EXPECT_GT(estimate_cost(inputs_for(with)).processor_seconds(),
+            estimate_cost(inputs_for(plain)).processor_seconds());
   v1::SimulationResult curve = result_of(with);
   int branch_ends = 0;
   for (v1::CurvePoint& each : *curve.mutable_points()) {
@@ -340,8 +340,8 @@ TEST(IndependentPoints, HaveAnotherInputHashThanAFollowedBranchAndCostLess) {
   const SimulationInputs followed = inputs_for(curve_simulation());
   const SimulationInputs alone = inputs_for(independent);
   EXPECT_NE(input_hash(followed), input_hash(alone));
-  EXPECT_LT(estimate_cost(alone.effective).processor_seconds(),
-            0.5 * estimate_cost(followed.effective).processor_seconds());
+  EXPECT_LT(estimate_cost(alone).processor_seconds(),
+            0.5 * estimate_cost(followed).processor_seconds());
 }
 
 TEST(IndependentPoints, HaveNoDirection) {

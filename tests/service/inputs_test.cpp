@@ -334,7 +334,7 @@ TEST(CostEstimate, OrdersStudiesByTheirDuration) {
   }
   double before = 0;
   for (const v1::Simulation& each : ascending) {
-    const double seconds = estimate_cost(inputs_of(each).effective).processor_seconds();
+    const double seconds = estimate_cost(inputs_of(each)).processor_seconds();
     EXPECT_GT(seconds, 1.5 * before) << each.ShortDebugString();
     before = seconds;
   }
@@ -342,15 +342,15 @@ TEST(CostEstimate, OrdersStudiesByTheirDuration) {
   slow.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(5);
   v1::Simulation quasi_static = slow;
   quasi_static.mutable_operating_point()->set_model(v1::POINT_MODEL_QUASI_STATIC);
-  EXPECT_LT(estimate_cost(inputs_of(quasi_static).effective).processor_seconds(),
-            estimate_cost(inputs_of(slow).effective).processor_seconds());
+  EXPECT_LT(estimate_cost(inputs_of(quasi_static)).processor_seconds(),
+            estimate_cost(inputs_of(slow)).processor_seconds());
 }
 
 TEST(CostEstimate, IsEqualForSimilarStudies) {
   v1::Simulation other = point_simulation();
   other.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(65.01);
-  EXPECT_EQ(estimate_cost(inputs_of(point_simulation()).effective).processor_seconds(),
-            estimate_cost(inputs_of(other).effective).processor_seconds());
+  EXPECT_EQ(estimate_cost(inputs_of(point_simulation())).processor_seconds(),
+            estimate_cost(inputs_of(other)).processor_seconds());
 }
 
 TEST(CostEstimate, IsHigherForSlowPointsAndWideCurves) {
@@ -359,7 +359,7 @@ TEST(CostEstimate, IsHigherForSlowPointsAndWideCurves) {
     out.mutable_inefficiency_curve()->Clear();
     *out.mutable_inefficiency_curve()->mutable_speeds_kilometres_per_hour() = {speeds.begin(),
                                                                                speeds.end()};
-    return estimate_cost(inputs_of(out).effective).processor_seconds();
+    return estimate_cost(inputs_of(out)).processor_seconds();
   };
   EXPECT_GT(curve_seconds({10}), 1.5 * curve_seconds({100}));
   EXPECT_GT(curve_seconds({50, 100}), 2 * curve_seconds({50})) << "what lies between is searched";

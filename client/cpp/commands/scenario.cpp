@@ -37,13 +37,13 @@ void add_solver_flags(FlagList& flags, v1::Simulation& simulation) {
                  simulation.mutable_solver_options()->set_march_settling_tolerance(value);
                });
   flags.whole_number("--maximum-mesh-cycles", {"mesh cycles", "1 to 100000", "4000"},
-                     "Limit of the search for the steady state", [&](int value) {
+                     "Limit of a march: search for a period and average", [&](int value) {
                        simulation.mutable_solver_options()->set_maximum_mesh_cycles(value);
                      });
-  flags.whole_number("--recorded-mesh-cycles", {"mesh cycles", "1 to 1000", "50"},
-                     "Mesh cycles that are averaged if no period is found", [&](int value) {
-                       simulation.mutable_solver_options()->set_recorded_mesh_cycles(value);
-                     });
+  flags.whole_number(
+      "--recorded-mesh-cycles", {"mesh cycles", "1 to 1000", "50"},
+      "Mesh cycles that are averaged at least if no period is found",
+      [&](int value) { simulation.mutable_solver_options()->set_recorded_mesh_cycles(value); });
 }
 
 /// Returns e.g. "failed: no steady state [WORK_LIMIT]"; empty if there is a result to show.

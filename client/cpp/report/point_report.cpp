@@ -45,7 +45,8 @@ void add_losses(const v1::PointResult& result, const Precision& precision, Sheet
              "%", "eq 30, RMS over time");
   if (precision.is_estimated()) {
     sheet.line("relative solver error", precision.error_percent(), "%",
-               "of each inefficiency, loss, torque and transmission error");
+               result.settled() ? "of each inefficiency, loss, torque and transmission error"
+                                : "of each inefficiency, loss and torque: 95 % interval");
   } else {
     sheet.line("relative solver error", "not estimated", "", "three digits are given");
   }
@@ -128,7 +129,11 @@ std::string cycle_table(const v1::PointResult& result, const Precision& precisio
   const double largest = std::max(std::abs(error.minimum()), std::abs(error.maximum()));
   add_extremes(
       "transmission error (DTE)", "um", error,
-      [&](double value) { return precision.part(1e6 * value, 1e6 * largest, 3); }, table);
+      [&](double value) {
+        return result.settled() ? precision.part(1e6 * value, 1e6 * largest, 3)
+                                : precision.other(1e6 * value, 3);
+      },
+      table);
   add("mesh force", "kN", result.mesh_force_newtons(), 1e-3, 0, 4);
   add("friction torque, pinion", "N m", result.pinion_friction_torque_newton_metres(), 1, 0, 4);
   add("friction torque, gear", "N m", result.gear_friction_torque_newton_metres(), 1, 0, 4);

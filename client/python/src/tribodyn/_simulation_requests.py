@@ -30,8 +30,8 @@ class Options:
     march_settling_tolerance: float | None = (
         None  #: of a marched response, 1e-12 to 0.1; None: 1e-6
     )
-    maximum_mesh_cycles: int | None = None  #: longest march, 1 to 100,000; None: 4000
-    recorded_mesh_cycles: int | None = None  #: record without a period, 1 to 1000; None: 50
+    maximum_mesh_cycles: int | None = None  #: of a whole march, 1 to 100,000; None: 4000
+    recorded_mesh_cycles: int | None = None  #: least record without a period, 1 to 1000; None: 50
     display_name: str = ""  #: title of the job
     labels: Mapping[str, str] = field(default_factory=dict)  #: labels of the job
     force: bool = False  #: computes although equal inputs have a result
