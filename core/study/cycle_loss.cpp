@@ -3,7 +3,6 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <set>
 #include <utility>
 
 namespace tribodyn {
@@ -24,22 +23,6 @@ CyclePart cycle_part(CyclePartKind kind, const DrivenCycle& cycle,
   return out;
 }
 
-/// Sets the losses of all readings from one solution for each place.
-void solve_each_place(const std::vector<MapReading>& readings,
-                      const std::vector<std::size_t>& pieces, const LossForces& loss_forces,
-                      CycleLoss& out) {
-  std::set<MapPlace> distinct;
-  for (const MapReading& reading : readings) distinct.insert(reading.place);
-  const std::vector<MapPlace> places(distinct.begin(), distinct.end());
-  const std::vector<double> forces = loss_forces(places);
-  std::map<MapPlace, double> force_at;
-  for (std::size_t i = 0; i < places.size(); ++i) force_at[places[i]] = forces[i];
-  for (std::size_t k = 0; k < pieces.size(); ++k) {
-    out.energies[pieces[k]] = force_at.at(readings[k].place) * readings[k].distance;
-  }
-  out.points = static_cast<int>(places.size());
-}
-
 }  // namespace
 
 DrivenCycle driven_cycle(std::vector<CyclePiece> pieces, const Vehicle& vehicle) {
@@ -56,7 +39,7 @@ DrivenCycle driven_cycle(std::vector<CyclePiece> pieces, const Vehicle& vehicle)
 }
 
 CycleLoss cycle_loss(const DrivenCycle& cycle, const LossForces& loss_forces,
-                     const CycleLossOptions& options) {
+                     const LossMapOptions& options) {
   std::vector<MapReading> readings;
   std::vector<std::size_t> pieces;  // of the readings
   for (std::size_t i = 0; i < cycle.pieces.size(); ++i) {
@@ -68,17 +51,13 @@ CycleLoss cycle_loss(const DrivenCycle& cycle, const LossForces& loss_forces,
   }
   CycleLoss out;
   out.energies.resize(cycle.pieces.size());
-  if (readings.empty()) return out;
-  if (options.is_point_by_point) {
-    solve_each_place(readings, pieces, loss_forces, out);
-    return out;
-  }
-  const LossMap map(readings, loss_forces, options.map);
+  const MappedLoss mapped = map_losses(readings, loss_forces, options);
   for (std::size_t k = 0; k < pieces.size(); ++k) {
-    out.energies[pieces[k]] = map.at(k) * readings[k].distance;
+    out.energies[pieces[k]] = mapped.forces[k] * readings[k].distance;
   }
-  out.map_error = map.estimated_error();
-  out.points = map.points();
+  out.map_error = mapped.map_error;
+  out.solver_error = mapped.solver_error;
+  out.points = mapped.points;
   return out;
 }
 

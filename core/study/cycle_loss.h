@@ -21,21 +21,17 @@ struct DrivenCycle {
 /// Pieces slower than kStandstillSpeed are standstill.
 DrivenCycle driven_cycle(std::vector<CyclePiece> pieces, const Vehicle& vehicle);
 
-struct CycleLossOptions {
-  LossMapOptions map;
-  bool is_point_by_point = false;  ///< solves every piece; places that are equal once
-};
-
 /// The mesh loss of one fluid over a cycle, as a sequence of steady points.
 struct CycleLoss {
   std::vector<double> energies;  ///< by piece [J]; 0 at standstill
-  double map_error = 0;          ///< estimated, of their sum [J]; 0: point by point
-  int points = 0;                ///< of the model
+  /// Of their sum, and `points`: as MappedLoss.
+  double map_error = 0, solver_error = 0;
+  int points = 0;
 };
 
 /// Throws what `loss_forces` throws.
 CycleLoss cycle_loss(const DrivenCycle& cycle, const LossForces& loss_forces,
-                     const CycleLossOptions& options);
+                     const LossMapOptions& options);
 
 /// What the pieces of a part of a cycle have in common.
 enum class CyclePartKind {

@@ -44,7 +44,9 @@ Response solve_response(const PointProblem& problem, const Scene& scene,
       return {std::move(result)};
     }
   }
-  if (options.method == SteadyStateMethod::kShooting) refuse_shooting(problem);
+  if (options.method == SteadyStateMethod::kShooting || options.gives_up_early) {
+    refuse_shooting(problem);
+  }
   return {solve_by_marching(problem, start, from, history, aperiodic)};
 }
 

@@ -46,7 +46,8 @@ std::optional<OrbitSearch> search_from(const PointProblem& problem, PointStart s
   }
   OrbitSearch search;
   search.maximum_mesh_cycles = options.maximum_mesh_cycles;
-  search.allow_transient_march = options.method != SteadyStateMethod::kShooting;
+  search.allow_transient_march =
+      options.method != SteadyStateMethod::kShooting && !options.gives_up_early;
   if (from) {
     if (from->period == 0) return std::nullopt;
     search.start = carried_start(system, *from, target);

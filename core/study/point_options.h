@@ -56,6 +56,10 @@ struct PointOptions {
   /// Costs up to a millisecond for each speed and load of a prepared gear set near a resonance.
   bool warn_of_coexisting_response = true;
   SteadyStateMethod method = SteadyStateMethod::kAutomatic;
+  /// kAutomatic alone: refuses with NOT_FOUND_BY_SHOOTING a point that is not found within some
+  /// tens of mesh cycles (a rattle, a doubled period, the neighbourhood of a fold). The others are
+  /// the same bits as without it.
+  bool gives_up_early = false;
   /// Wanted relative error of both inefficiencies, the torque and the extremes of the transmission
   /// error [1e-8, 1e-2]: whichever model and method answers.
   double tolerance = 1e-3;

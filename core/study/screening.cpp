@@ -1,5 +1,7 @@
 #include "core/study/screening.h"
 
+#include <algorithm>
+
 #include "core/study/operating_point.h"
 #include "core/study/point_by_shooting.h"
 #include "core/study/quasi_static_point.h"
@@ -65,6 +67,7 @@ std::optional<PointFigures> find_figures(PreparedScene& prepared,
   std::optional<SectionPoint> aperiodic;
   const std::optional<PeriodicOrbit> orbit =
       find_orbit(problem.periodic(options.tolerance), *search, work, aperiodic);
+  if (!orbit && options.gives_up_early) refuse_shooting(problem);
   if (!orbit) return std::nullopt;
   PointFigures figures = figures_of(problem, *orbit, PointModel::kFull);
   if (options.sensitivities) {
@@ -91,6 +94,11 @@ PointFigures figures_at(PreparedScene& prepared, const OperatingCondition& condi
 }
 
 }  // namespace
+
+bool responses_coexist(const PointFigures& figures) {
+  return std::any_of(figures.warnings.begin(), figures.warnings.end(),
+                     [](const RangeWarning& each) { return each.code == "RESPONSES_COEXIST"; });
+}
 
 PointFigures main_figures(const PointResult& r) {
   return {r.pinion_torque,

@@ -30,6 +30,9 @@ struct PointFigures {
   std::optional<PointSensitivities> sensitivities;
 };
 
+/// Whether another response was found at the point: the warning RESPONSES_COEXIST.
+bool responses_coexist(const PointFigures& figures);
+
 /// The main figures of a result, with its contact summary and sensitivities.
 PointFigures main_figures(const PointResult& result);
 

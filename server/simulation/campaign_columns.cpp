@@ -18,7 +18,8 @@ void append_axle_figures(const PointFigures& figures, std::vector<double>& out) 
               figures.dte_minimum, figures.dte_maximum, figures.contact_loss ? 1.0 : 0.0,
               figures.settled ? 1.0 : 0.0, static_cast<double>(figures.period_in_mesh_cycles),
               figures.estimated_relative_error.value_or(kNone),
-              static_cast<double>(to_message(figures.model))});
+              static_cast<double>(to_message(figures.model)),
+              responses_coexist(figures) ? 1.0 : 0.0});
 }
 
 void append_axle_contact(const PointFigures& figures, std::vector<double>& out) {

@@ -13,7 +13,7 @@ namespace tribodyn::server {
 
 /// The columns that every campaign of the axle has, by number. A number never changes its meaning:
 /// databases hold it. The names are those of EvaluatePointsResponse.
-inline constexpr std::array<std::string_view, 13> kCampaignColumns = {
+inline constexpr std::array<std::string_view, 14> kCampaignColumns = {
     "refusal_number",  // 0: the row has figures; n: refusal n
     "pinion_torque_newton_metres",
     "wheel_torque_newton_metres",
@@ -27,6 +27,7 @@ inline constexpr std::array<std::string_view, 13> kCampaignColumns = {
     "period_in_mesh_cycles",
     "estimated_relative_error",
     "model",
+    "responses_coexist",
 };
 /// The columns that follow in a campaign with contact_figures.
 inline constexpr std::array<std::string_view, 9> kContactFigureColumns = {

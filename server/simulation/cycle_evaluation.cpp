@@ -17,6 +17,7 @@
 #include "core/version.h"
 #include "server/contract/check_message.h"
 #include "server/contract/constraints.h"
+#include "server/mapping/from_core.h"
 #include "server/mapping/to_core.h"
 #include "server/resources/lubricant_parameters.h"
 #include "server/simulation/solver_defaults.h"
@@ -175,35 +176,62 @@ class FluidPoints {
         gear_set_(gear_set),
         physical_(scene(fluid.base)),
         options_(point_options(fluid)) {
+    fluid_.shares_orbits = false;
     options_.progress = [&is_over](double) { return !is_over(); };
   }
 
-  /// Returns the loss forces [N] at the places. Throws Refusal of the first point that the core
-  /// refuses.
-  std::vector<double> loss_forces(const std::vector<MapPlace>& places) {
+  /// The first warning of each code, with the number of the points that have it.
+  std::vector<RangeWarning> warnings() const {
+    std::vector<RangeWarning> out;
+    for (const auto& [code, warning] : warnings_) {
+      out.push_back({code, fmt::format("at {} of {} points; first: {}", warning.points, points_,
+                                       warning.sentence)});
+    }
+    return out;
+  }
+
+  /// As LossForces. Throws Refusal of the first point that the core refuses.
+  std::vector<std::optional<LossForce>> loss_forces(const std::vector<MapPlace>& places,
+                                                    LossEffort effort) {
     set_conditions(places);
+    PointOptions options = options_;
+    options.gives_up_early = effort == LossEffort::kBrief;
+    if (effort == LossEffort::kQuasiStatic) options.model = PointModel::kQuasiStatic;
     const std::vector<EvaluatedPoint> points =
-        evaluate_conditions(fluid_, *fluid_.base.lubricant, physical_, {}, options_, gear_set_);
-    std::vector<double> out;
+        evaluate_conditions(fluid_, *fluid_.base.lubricant, physical_, {}, options, gear_set_);
+    std::vector<std::optional<LossForce>> out;
     for (std::size_t i = 0; i < places.size(); ++i) {
+      if (options.gives_up_early && points[i].refusal_reason == "NOT_FOUND_BY_SHOOTING") {
+        out.push_back(std::nullopt);
+        continue;
+      }
       if (!points[i].figures) {
         throw Refusal(
             points[i].refusal_reason,
             fmt::format("no steady state at {:.4g} km/h and {:.4g} N m at the ring gear: {}",
                         3.6 * places[i][0], places[i][1], points[i].refusal_message));
       }
-      out.push_back(points[i].figures->mesh_loss_power / places[i][0]);
-      const auto& error = points[i].figures->estimated_relative_error;
-      largest_error_ = std::max(largest_error_, error.value_or(0));
-      if (!error) is_estimated_ = false;
+      const PointFigures& figures = *points[i].figures;
+      count_warnings(figures);
+      const double force = figures.mesh_loss_power / places[i][0];
+      out.push_back(LossForce{force, force * figures.estimated_relative_error.value_or(kNoEnergy)});
     }
     return out;
   }
 
-  /// Returns the largest estimated relative error of the points so far; NaN if one has no estimate.
-  double solver_error() const { return is_estimated_ ? largest_error_ : kNoEnergy; }
-
  private:
+  struct CountedWarning {
+    std::string sentence;  // of the first point
+    int points = 0;
+  };
+
+  void count_warnings(const PointFigures& figures) {
+    ++points_;
+    for (const RangeWarning& each : figures.warnings) {
+      ++warnings_.try_emplace(each.code, CountedWarning{each.sentence}).first->second.points;
+    }
+  }
+
   /// A place of the map is the level road at the acceleration that gives its torque.
   void set_conditions(const std::vector<MapPlace>& places) {
     const Vehicle& vehicle = physical_.vehicle;
@@ -229,8 +257,8 @@ class FluidPoints {
   std::shared_ptr<PreparedGearSet> gear_set_;
   Scene physical_;
   PointOptions options_;
-  double largest_error_ = 0;
-  bool is_estimated_ = true;
+  int points_ = 0;  // that have figures
+  std::map<std::string, CountedWarning> warnings_;
 };
 
 v1::CyclePartKind part_kind(CyclePartKind kind) {
@@ -290,12 +318,15 @@ v1::CycleLubricant cycle_lubricant(const CycleEvaluation& evaluation, const Poin
     FluidPoints points(fluid, gear_set, is_over);
     const CycleLoss loss = cycle_loss(
         evaluation.cycle,
-        [&points](const std::vector<MapPlace>& places) { return points.loss_forces(places); },
+        [&points](const std::vector<MapPlace>& places, LossEffort effort) {
+          return points.loss_forces(places, effort);
+        },
         evaluation.options);
     set_cycle_energies(evaluation, parts, loss, out);
     out.set_map_error_joules(loss.map_error);
-    out.set_solver_error_joules(points.solver_error() * out.loss_joules());
+    out.set_solver_error_joules(loss.solver_error);
     out.set_points(loss.points);
+    add_warnings(points.warnings(), out.mutable_warnings());
   } catch (const Refusal& refusal) {
     out.set_refusal_reason(refusal.reason());
     out.set_refusal_message(refusal.what());
@@ -374,8 +405,8 @@ std::optional<CycleEvaluation> read_cycle(const v1::EvaluateCycleRequest& reques
   }
   if (violations.size() > before) return std::nullopt;
   out.cycle = driven_cycle(std::move(pieces), scene(out.fluids.front().base).vehicle);
-  if (request.map_tolerance() != 0) out.options.map.tolerance = request.map_tolerance();
-  out.options.map.most_points = kMaximumCyclePoints / request.lubricants_size();
+  if (request.map_tolerance() != 0) out.options.tolerance = request.map_tolerance();
+  out.options.most_points = kMaximumCyclePoints / request.lubricants_size();
   out.options.is_point_by_point = request.point_by_point();
   return out;
 }

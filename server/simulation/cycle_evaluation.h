@@ -23,7 +23,7 @@ inline constexpr int kMostCycleLubricants = 8;
 struct CycleEvaluation {
   DrivenCycle cycle;
   std::vector<PointEvaluation> fluids;  ///< the lubricants; their conditions are not used
-  CycleLossOptions options;             ///< of each fluid
+  LossMapOptions options;               ///< of each fluid
 };
 
 /// Checks the request and finds its resources. Returns nullopt and adds all violations if the

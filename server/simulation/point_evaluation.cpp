@@ -146,6 +146,7 @@ class Rows {
     out_.mutable_refusal_numbers()->Resize(rows, 0);
     out_.mutable_contact_loss()->Resize(rows, false);
     out_.mutable_settled()->Resize(rows, false);
+    out_.mutable_responses_coexist()->Resize(rows, false);
     out_.mutable_period_in_mesh_cycles()->Resize(rows, 0);
     out_.mutable_model()->Resize(rows, v1::POINT_MODEL_UNSPECIFIED);
     if (evaluation.with_contact) {
@@ -180,6 +181,7 @@ class Rows {
     out_.set_period_in_mesh_cycles(row, figures.period_in_mesh_cycles);
     out_.set_estimated_relative_error(row, figures.estimated_relative_error.value_or(kAbsent));
     out_.set_model(row, to_message(figures.model));
+    out_.set_responses_coexist(row, responses_coexist(figures));
     if (figures.contact && !out_.film_ratio_mean().empty()) {
       for (const auto& [mutable_column, member] : kContactColumns) {
         (out_.*mutable_column)()->Set(row, (*figures.contact).*member);
@@ -240,10 +242,11 @@ EvaluatedPoint refused_point(std::string reason, std::string message) {
 }
 
 EvaluatedPoint computed_point(PreparedScene& prepared, const OperatingCondition& condition,
-                              const PointOptions& options,
-                              const std::vector<Elasticity>& elasticities) {
+                              const PointOptions& options, const PointEvaluation& evaluation) {
+  const std::vector<Elasticity>& elasticities = evaluation.elasticities;
   EvaluatedPoint out;
-  out.figures = screen_point(prepared, condition, options);
+  out.figures = evaluation.shares_orbits ? screen_point(prepared, condition, options)
+                                         : solve_point_figures(prepared, condition, options);
   if (!is_finite(*out.figures)) {
     return refused_point("RESULT_NOT_FINITE", "a figure of the point is not finite");
   }
@@ -257,7 +260,7 @@ EvaluatedPoint computed_point(PreparedScene& prepared, const OperatingCondition&
 
 /// Computes the points of a scene at one group of conditions.
 void compute_group(const Scene& scene, const PointEvaluation::Group& group,
-                   const std::vector<Elasticity>& elasticities, const PointOptions& options,
+                   const PointEvaluation& evaluation, const PointOptions& options,
                    const std::shared_ptr<PreparedGearSet>& gear_set,
                    std::vector<EvaluatedPoint>& out) {
   const auto at = [&out](int position) -> EvaluatedPoint& {
@@ -275,7 +278,7 @@ void compute_group(const Scene& scene, const PointEvaluation::Group& group,
   for (const auto& [position, condition] : group.conditions) {
     if (!options.progress(0)) throw Cancelled();
     try {
-      at(position) = computed_point(*prepared, condition, options, elasticities);
+      at(position) = computed_point(*prepared, condition, options, evaluation);
     } catch (const Refusal& refusal) {
       at(position) = refused_point(refusal.reason(), refusal.what());
     }
@@ -285,9 +288,9 @@ void compute_group(const Scene& scene, const PointEvaluation::Group& group,
 /// Computes the points of a lubricant at one group of conditions, and writes them to their
 /// positions in `out`. `physical` is the scene, whose lubricant must be this one and whose
 /// temperatures are set here. Throws Cancelled as soon as `options.progress` returns false.
-void evaluate_group(const PointEvaluation::Group& group,
-                    const std::vector<Elasticity>& elasticities, const v1::Lubricant& lubricant,
-                    Scene& physical, const TemperatureErrors& errors, const PointOptions& options,
+void evaluate_group(const PointEvaluation::Group& group, const PointEvaluation& evaluation,
+                    const v1::Lubricant& lubricant, Scene& physical,
+                    const TemperatureErrors& errors, const PointOptions& options,
                     const std::shared_ptr<PreparedGearSet>& gear_set,
                     std::vector<EvaluatedPoint>& out) {
   const double sump = group.sump_temperature_celsius + errors.sump_kelvin;
@@ -303,7 +306,7 @@ void evaluate_group(const PointEvaluation::Group& group,
   }
   physical.sump_temperature = sump + kZeroCelsius;
   physical.inlet_temperature_rise = rise;
-  compute_group(physical, group, elasticities, options, gear_set, out);
+  compute_group(physical, group, evaluation, options, gear_set, out);
 }
 
 }  // namespace
@@ -423,8 +426,7 @@ std::vector<EvaluatedPoint> evaluate_conditions(const PointEvaluation& evaluatio
       });
     }
     if (group.conditions.empty()) continue;
-    evaluate_group(group, evaluation.elasticities, lubricant, physical, errors, options, gear_set,
-                   out);
+    evaluate_group(group, evaluation, lubricant, physical, errors, options, gear_set, out);
   }
   return out;
 }
@@ -458,8 +460,7 @@ void CandidateScene::set_candidate(int candidate) {
 void CandidateScene::evaluate(const PointEvaluation::Group& group,
                               const std::shared_ptr<PreparedGearSet>& gear_set,
                               std::vector<EvaluatedPoint>& out) {
-  evaluate_group(group, evaluation_.elasticities, resources_.lubricant, physical_, {}, options_,
-                 gear_set, out);
+  evaluate_group(group, evaluation_, resources_.lubricant, physical_, {}, options_, gear_set, out);
 }
 
 v1::EvaluatePointsResponse evaluate_points(const PointEvaluation& evaluation,

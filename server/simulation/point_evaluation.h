@@ -41,6 +41,9 @@ struct PointEvaluation {
   std::vector<Group> groups;
   int candidates = 1;
   int conditions = 0;
+  /// Whether other lubricants follow at the same few conditions: by screen_point(), or else by
+  /// solve_point_figures().
+  bool shares_orbits = true;
   bool with_contact = false;             ///< figures have PointFigures::contact
   std::vector<Elasticity> elasticities;  ///< that each point has
 };
@@ -87,8 +90,8 @@ std::string unknown_parameter_text(const std::string& path);
 /// Returns the options of all points of an evaluation, without progress.
 PointOptions point_options(const PointEvaluation& evaluation);
 
-/// Computes the points of a lubricant at all conditions of the evaluation by screen_point(), or
-/// only at those `wanted`: other points are then empty.
+/// Computes the points of a lubricant at all conditions of the evaluation, or only at those
+/// `wanted`: other points are then empty.
 /// `physical` is the scene, whose lubricant and temperatures are set here; `options` are its
 /// point_options() with progress set. Throws Cancelled as soon as that returns false.
 std::vector<EvaluatedPoint> evaluate_conditions(const PointEvaluation& evaluation,

@@ -6,7 +6,7 @@ namespace tribodyn::server {
 /// reads a row from its beginning.
 inline constexpr char kSchema1[] = R"sql(
 -- Bytes beside messages: compressed columns 1 (column_codec.h), levels of histories 1 (pyramid.h),
--- columns of tiles 1 (campaign_columns.h). Whoever changes one of them counts it up.
+-- columns of tiles 2 (campaign_columns.h). Whoever changes one of them counts it up.
 CREATE TABLE format (
   id INTEGER PRIMARY KEY CHECK (id = 1),
   fingerprint TEXT NOT NULL CHECK (length(fingerprint) = 64)

@@ -50,9 +50,9 @@ PointResult marched_from(const Scene& scene, const OperatingCondition& condition
                          const PointResult& r) {
   PointOptions march;
   march.method = SteadyStateMethod::kMarch;
-  march.tolerance = 1e-7;
-  march.march_step_tolerance = 1e-10;
-  march.march_settling_tolerance = 1e-8;
+  march.tolerance = 1e-6;
+  march.march_step_tolerance = 1e-9;
+  march.march_settling_tolerance = 1e-7;
   march.carried_state = carried_from(r);
   return solve_operating_point(scene, condition, march);
 }

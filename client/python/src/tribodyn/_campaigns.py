@@ -257,6 +257,6 @@ def _tight(name: str, values: np.ndarray) -> np.ndarray:
         return np.array(words, dtype=object)[np.nan_to_num(values).astype(int)]
     if np.isnan(values).any():
         return values
-    if name in ("contact_loss", "settled", "elasticities_one_sided"):
+    if name in ("contact_loss", "settled", "responses_coexist", "elasticities_one_sided"):
         return values.astype(bool)
     return values.astype(int) if name == "period_in_mesh_cycles" else values
