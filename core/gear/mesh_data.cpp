@@ -14,7 +14,7 @@ double coefficient(const std::vector<double>& list, std::size_t i) {
 }
 
 constexpr double kManyTurns = 1e6;                  // [rad] beyond, an angle has lost its digits
-constexpr std::size_t kMostExpandedHarmonics = 32;  // beyond, the expansions take too long to make
+constexpr std::size_t kMostExpandedHarmonics = 64;  // beyond, the expansions take too long to make
 
 }  // namespace
 
@@ -75,27 +75,27 @@ void MeshData::expand() {
   std::size_t count = 8;
   while (0.6 * reach_ * static_cast<double>(count) < std::numbers::pi) count *= 2;
   expansions_.resize(count);
+  std::vector<double> cosine(count), sine(count);  // of even angles
   for (std::size_t i = 0; i < count; ++i) {
     const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
+    cosine[i] = std::cos(angle);
+    sine[i] = std::sin(angle);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t n = 0; n < harmonics_.size(); ++n) {
-      const double order = static_cast<double>(n + 1);
-      add(harmonics_[n], order, std::cos(order * angle), std::sin(order * angle), expansions_[i]);
+      const std::size_t at = (n + 1) * i % count;
+      add(harmonics_[n], static_cast<double>(n + 1), cosine[at], sine[at], expansions_[i]);
     }
   }
 }
 
 void MeshData::add(const Harmonic& h, double order, double c, double s, MeshExpansion& to) {
   using E = MeshExpansion;
-  // Each function and its derivative by its angle over the order.
+  // Each function, and its derivative by its angle over the order.
+  std::array<double, E::kFunctions> value{}, turned{};
   const auto set = [&](E::Function function, double sine, double cosine) {
-    double value = sine * s + cosine * c, turned = sine * c - cosine * s, factor = 1;
-    for (int k = 0; k < E::kTerms; ++k) {
-      to.term[k][function] += factor * value;
-      const double next = -value;
-      value = turned;
-      turned = next;
-      factor *= order / (k + 1);
-    }
+    value[function] = sine * s + cosine * c;
+    turned[function] = sine * c - cosine * s;
   };
   set(E::kPinionRadius, h.radius_p_sin, h.radius_p_cos);
   set(E::kPinionIntegral, h.radius_p_cos / h.pinion_order, -h.radius_p_sin / h.pinion_order);
@@ -105,6 +105,13 @@ void MeshData::add(const Harmonic& h, double order, double c, double s, MeshExpa
   set(E::kErrorSlope, -h.pinion_order * h.error_cos, h.pinion_order * h.error_sin);
   set(E::kGearRadius, h.radius_g_sin, h.radius_g_cos);
   set(E::kGearIntegral, -h.radius_g_cos / h.gear_order, h.radius_g_sin / h.gear_order);
+  double factor = 1;  // order^k / k!
+  for (int k = 0; k < E::kTerms; ++k) {
+    const auto& derivative = k % 2 == 0 ? value : turned;
+    const double signed_factor = k % 4 < 2 ? factor : -factor;
+    for (int f = 0; f < E::kFunctions; ++f) to.term[k][f] += signed_factor * derivative[f];
+    factor *= order / (k + 1);
+  }
 }
 
 const MeshExpansion* MeshData::nearest_expansion(double theta, double& offset) const {

@@ -1,34 +1,42 @@
 #pragma once
 
-#include <algorithm>
-
 #include "core/driveline/contact_solver.h"
+#include "core/gear/mesh_data.h"
 
 namespace tribodyn {
 
 /// A limit on the work of marches, in contact solutions: results do not depend on the machine.
-/// Where flanks carry no load, an instant counts as one; a contact that the batch leaves to the
-/// scalar kernel counts as eleven, by its time.
+/// Whatever else takes time counts as contact solutions, by its measured time: an evaluation of the
+/// equations of motion as one, or more where the mesh functions are summed order by order; a
+/// contact that the batch leaves to the scalar kernel as 20.
 class WorkLimit {
  public:
-  /// Counts from here on. Keeps the reference.
-  WorkLimit(const ContactTally& tally, double most_contacts)
-      : tally_(tally), start_(tally), most_(most_contacts) {}
+  /// Counts from here on. Keeps the reference to the tally.
+  WorkLimit(const ContactTally& tally, const MeshData& mesh, double most_contacts)
+      : tally_(tally), start_(tally), per_instant_(instant_work(mesh)), most_(most_contacts) {}
 
   /// Share of the limit that has been spent; may exceed 1 by some thousand contacts.
   double spent_share() const {
-    constexpr long kMoreByScalarKernel = 10;
-    const long spent =
-        std::max(tally_.solutions - start_.solutions, tally_.instants - start_.instants) +
-        kMoreByScalarKernel * (tally_.handed_back - start_.handed_back);
-    return static_cast<double>(spent) / most_;
+    constexpr double kMoreByScalarKernel = 19;
+    const double spent =
+        static_cast<double>(tally_.solutions - start_.solutions) +
+        per_instant_ * static_cast<double>(tally_.instants - start_.instants) +
+        kMoreByScalarKernel * static_cast<double>(tally_.handed_back - start_.handed_back);
+    return spent / most_;
   }
   bool is_spent() const { return spent_share() >= 1; }
   double most_contacts() const { return most_; }
 
  private:
+  static double instant_work(const MeshData& mesh) {
+    constexpr double kPerOrder = 0.1;
+    const bool is_summed = !(mesh.series_reach() > 0);
+    return 1 + (is_summed ? kPerOrder * static_cast<double>(mesh.orders().size()) : 0);
+  }
+
   const ContactTally& tally_;
   ContactTally start_;
+  double per_instant_;
   double most_;
 };
 

@@ -17,14 +17,15 @@
 namespace tribodyn {
 namespace {
 
-// Of each limit of work; the rest is for the average, if no period is found.
-constexpr double kShareOfSearch = 0.5;
+// Of each limit of work; the rest is for the average, if no period is found. The second where none
+// is to be expected.
+constexpr double kShareOfSearch = 0.5, kShareOfDoubtfulSearch = 0.25;
 
 // Tolerance of the steps of a response without a period, of which only statistics count. At a
 // torque of 0.1 N m the RMS inefficiencies of 8,000 mesh cycles with steps of 1e-7, 1e-5, 1e-4 and
 // 1e-3 agree to 1 %, the error of such an average; at the rippled stiffness of rattle_test.cpp
 // those of 4,000 mesh cycles agree to 1e-4.
-constexpr double kRattleStep = 1e-5;
+constexpr double kRattleStep = 1e-4;
 
 // Mesh cycles of the search where shooting has found that no response of one or two mesh cycles
 // attracts, or flanks tap: of nine random gear sets and fluids three settle after 24 to 26 all the
@@ -37,6 +38,7 @@ struct MarchPlan {
   int first_period = 1;
   int search_cycles = 0;                     ///< mesh cycles of the search for a period at most
   std::optional<SectionPoint> average_from;  ///< in place of where the search ends
+  double share_of_search = kShareOfSearch;   ///< of the limit of contacts
   bool floats = false;                       ///< no flank ever carries a load
   std::optional<RangeWarning> why_no_period;
 };
@@ -113,6 +115,7 @@ MarchPlan plan_march(const PointProblem& problem, PointStart start,
                                       : std::nullopt) {
     out.start = *tapping;
     out.search_cycles = std::min(out.search_cycles, kRattleSearchCycles);
+    out.share_of_search = kShareOfDoubtfulSearch;
     out.why_no_period =
         RangeWarning{"RATTLES",
                      "under so light a load the flanks tap each other in the backlash, and no "
@@ -122,6 +125,7 @@ MarchPlan plan_march(const PointProblem& problem, PointStart start,
   }
   if (may_shorten && aperiodic) {
     out.search_cycles = std::min(out.search_cycles, kRattleSearchCycles);
+    out.share_of_search = kShareOfDoubtfulSearch;
     out.average_from = aperiodic;
     out.why_no_period =
         RangeWarning{"RATTLES",
@@ -142,7 +146,7 @@ class MarchedPoint {
         contacts_(march_step_tolerance(options_) >= kAccuracyOfBatch
                       ? ContactSolver(problem.contacts, problem.tally)
                       : ContactSolver(problem.contacts.model(), problem.tally)),
-        limit_(problem.tally, most_contacts_of_march(options_)),
+        limit_(problem.tally, system_.mesh(), most_contacts_of_march(options_)),
         history_(history),
         out_(empty_result(problem.target, PointModel::kFull)) {
     steps_.relative_tolerance = march_step_tolerance(options_);
@@ -194,7 +198,7 @@ class MarchedPoint {
     search.first_period = plan.first_period;
     search.march = steps_within_the_limit();
     search.maximum_mesh_cycles = plan.search_cycles;
-    search.is_over = [this] { return limit_.spent_share() >= kShareOfSearch; };
+    search.is_over = [this, &plan] { return limit_.spent_share() >= plan.share_of_search; };
     if (options_.progress) search.progress = [this](double fraction) { return report(fraction); };
     const PeriodicProblem periodic = problem_.periodic(march_settling_tolerance(options_));
     return solve_steady_state(periodic, contacts_, plan.start, search);
@@ -237,7 +241,7 @@ class MarchedPoint {
     RattleOptions rattle;
     rattle.march = steps_within_the_limit();
     rattle.march.relative_tolerance =
-        std::max(steps_.relative_tolerance, std::min(kRattleStep, 1e-2 * options_.tolerance));
+        std::max(steps_.relative_tolerance, std::min(kRattleStep, 0.1 * options_.tolerance));
     rattle.tolerance = options_.tolerance;
     rattle.least_mesh_cycles = options_.recorded_mesh_cycles;
     rattle.most_mesh_cycles =

@@ -8,12 +8,12 @@
 namespace tribodyn {
 
 /// The limit of a march's work with method = AUTOMATIC, in contact solutions: search, multipliers
-/// and average together. Some 0.3 s.
-inline constexpr double kMostContactsOfAutomaticMarch = 4e5;
+/// and average together. Some 0.4 s.
+inline constexpr double kMostContactsOfAutomaticMarch = 2.2e5;
 /// With method = MARCH the limit is so many contact solutions for each mesh cycle of
 /// PointOptions::maximum_mesh_cycles: from 2 km/h on twice of what the reference axle takes for a
-/// mesh cycle, 2,000 to 4,000. So the default of 4,000 mesh cycles ends after some 16 s.
-inline constexpr double kMostContactsPerMeshCycle = 5000;
+/// mesh cycle, 2,000 to 4,000. So the default of 4,000 mesh cycles ends after some 40 s.
+inline constexpr double kMostContactsPerMeshCycle = 8000;
 
 /// The limit of a march's work by the options, in contact solutions.
 double most_contacts_of_march(const PointOptions& options);

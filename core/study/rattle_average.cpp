@@ -13,7 +13,7 @@
 namespace tribodyn {
 namespace {
 
-constexpr int kRattleBlockCycles = 12;
+constexpr int kRattleBlockCycles = 6;
 
 struct RattleBlock {
   ResponseRecord record;

@@ -10,7 +10,7 @@
 namespace tribodyn {
 
 // The average of a response that does not repeat, and its error:
-//  1. Blocks of twelve mesh cycles, which hold whole periods of one to four cycles, are marched and
+//  1. Blocks of six mesh cycles, which hold whole periods of one to three cycles, are marched and
 //     recorded at constant torques. A block's balance of momentum gives the unknown torque that it
 //     would have needed to end as fast as it began. The next block has the mean of these torques
 //     over the second half of the blocks so far, and the mean speed is restored, by a shift of the

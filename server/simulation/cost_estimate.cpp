@@ -26,7 +26,7 @@ constexpr Work kQuasiStaticPoint{340, 0.25e-6};  // at the usual tolerance
 constexpr double kQuasiStaticOrder = 0.4;        // exponent of their growth with 1 / tolerance
 // [s] for each contact solution, with all computation around it (measured).
 constexpr double kShotSecondsEach = 0.21e-6;
-constexpr double kMarchedSecondsEach = 0.8e-6;
+constexpr double kMarchedSecondsEach = 2e-6;
 // Extra cost per e-fold of the speed range of a curve that follows a branch: distant points
 // converge more slowly, and a wide curve is more likely to need step halving to locate the end of a
 // branch.

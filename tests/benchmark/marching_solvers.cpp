@@ -1,15 +1,12 @@
 #include "tests/benchmark/marching_solvers.h"
 
 #include <cvode/cvode.h>
-#include <nvector/nvector_serial.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
-#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
-#include <algorithm>
 #include <array>
 #include <boost/numeric/odeint.hpp>
-#include <stdexcept>
+#include <optional>
+
+#include "tests/benchmark/cvode_march.h"
 
 namespace tribodyn {
 namespace {
@@ -59,104 +56,33 @@ CycleStepper dopri5(ScaledProblem& problem, double tolerance) {
   };
 }
 
-void check(int flag, const char* call) {
-  if (flag < 0) throw std::runtime_error(std::string(call) + " failed: " + std::to_string(flag));
-}
-
-class Cvode {
- public:
-  Cvode(ScaledProblem& problem, double tolerance, int method, bool roots)
-      : problem_(problem), roots_(roots) {
-    check(SUNContext_Create(nullptr, &context_), "SUNContext_Create");
-    vector_ = N_VNew_Serial(kSize, context_);
-    N_VConst(0, vector_);
-    cvode_ = CVodeCreate(method, context_);
-    check(CVodeInit(cvode_, rates, 0, vector_), "CVodeInit");
-    check(CVodeSStolerances(cvode_, 0, tolerance), "CVodeSStolerances");
-    check(CVodeSetUserData(cvode_, this), "CVodeSetUserData");
-    if (method == CV_ADAMS) {
-      nonlinear_ = SUNNonlinSol_FixedPoint(vector_, 0, context_);
-      check(CVodeSetNonlinearSolver(cvode_, nonlinear_), "CVodeSetNonlinearSolver");
-    } else {
-      matrix_ = SUNDenseMatrix(kSize, kSize, context_);
-      linear_ = SUNLinSol_Dense(vector_, matrix_, context_);
-      check(CVodeSetLinearSolver(cvode_, linear_, matrix_), "CVodeSetLinearSolver");
-    }
-    if (roots) check(CVodeRootInit(cvode_, 2, events), "CVodeRootInit");
-    CVodeSetNoInactiveRootWarn(cvode_);
-    CVodeSetMaxNumSteps(cvode_, 100000);
-    CVodeSetErrFile(cvode_, nullptr);
-  }
-  ~Cvode() {
-    CVodeFree(&cvode_);
-    if (nonlinear_ != nullptr) SUNNonlinSolFree(nonlinear_);
-    if (linear_ != nullptr) SUNLinSolFree(linear_);
-    if (matrix_ != nullptr) SUNMatDestroy(matrix_);
-    N_VDestroy(vector_);
-    SUNContext_Free(&context_);
-  }
-  Cvode(const Cvode&) = delete;
-  Cvode& operator=(const Cvode&) = delete;
-
-  void cycle(MarchState& state) {
-    start_cycle(state);
-    double* y = N_VGetArrayPointer(vector_);
-    problem_.to_scaled(state, y);
-    problem_.hold_regime = false;
-    problem_.take_regime(0, y);
-    problem_.hold_regime = roots_;
-    double phase = 0;
-    restart(phase);
-    while (phase < 1) {
-      check(CVodeSetStopTime(cvode_, 1), "CVodeSetStopTime");
-      const int flag = CVode(cvode_, 1, vector_, &phase, CV_NORMAL);
-      check(flag, "CVode");
-      if (flag != CV_ROOT_RETURN) continue;
-      int found[2] = {0, 0};
-      CVodeGetRootInfo(cvode_, found);
-      problem_.change_regime(found[0] > 0 ? 0 : 1, phase, y);
-      CVodeGetLastStep(cvode_, &step_);
-      restart(phase);
-    }
-    CVodeGetLastStep(cvode_, &step_);
-    state = problem_.from_scaled(y);
-  }
-
- private:
-  /// With the step it had: it need not grope again.
-  void restart(double phase) {
-    check(CVodeReInit(cvode_, phase, vector_), "CVodeReInit");
-    if (step_ > 0) CVodeSetInitStep(cvode_, 0.1 * step_);
-    const int rising[2] = {1, 1};
-    if (roots_) CVodeSetRootDirection(cvode_, const_cast<int*>(rising));
-  }
-  static int rates(double phase, N_Vector y, N_Vector dy, void* self) {
-    static_cast<Cvode*>(self)->problem_.rates(phase, N_VGetArrayPointer(y), N_VGetArrayPointer(dy));
-    return 0;
-  }
-  static int events(double phase, N_Vector y, double* out, void* self) {
-    const auto g = static_cast<Cvode*>(self)->problem_.events(phase, N_VGetArrayPointer(y));
-    std::copy(g.begin(), g.end(), out);
-    return 0;
-  }
-
-  ScaledProblem& problem_;
-  bool roots_;
-  double step_ = 0;
-  SUNContext context_ = nullptr;
-  N_Vector vector_ = nullptr;
-  void* cvode_ = nullptr;
-  SUNNonlinearSolver nonlinear_ = nullptr;
-  SUNMatrix matrix_ = nullptr;
-  SUNLinearSolver linear_ = nullptr;
-};
-
 MarchingSolver cvode(const char* name, int method, bool roots) {
   return {name,
-          {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8},
+          {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9},
           [method, roots](ScaledProblem& problem, double tolerance) -> CycleStepper {
-            return [solver = std::make_shared<Cvode>(problem, tolerance, method, roots)](
-                       MarchState& state) { solver->cycle(state); };
+            std::optional<CvodeMarch::Roots> events;
+            if (roots) {
+              events = {
+                  [&problem](double phase, const double* y) { return problem.events(phase, y); },
+                  [&problem](int event, double phase, const double* y) {
+                    problem.change_regime(event, phase, y);
+                  }};
+            }
+            const auto march = std::make_shared<CvodeMarch>(
+                method, std::vector<double>(kSize, tolerance),
+                [&problem](double phase, const double* y, double* rates) {
+                  problem.rates(phase, y, rates);
+                },
+                events);
+            return [&problem, roots, march](MarchState& state) {
+              start_cycle(state);
+              problem.to_scaled(state, march->state());
+              problem.take_regime(0, march->state());
+              problem.hold_regime = roots;
+              march->start();
+              march->to(1);
+              state = problem.from_scaled(march->state());
+            };
           }};
 }
 
@@ -209,11 +135,11 @@ void ScaledProblem::change_regime(int event, double phase, const double* scaled)
 
 std::vector<MarchingSolver> marching_solvers() {
   return {{"RK4", {24, 48, 96, 192, 384}, runge_kutta_4},
-          {"odeint dopri5", {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7}, dopri5},
+          {"odeint dopri5", {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9}, dopri5},
           cvode("CVODE Adams", CV_ADAMS, false),
-          cvode("CVODE Adams, roots", CV_ADAMS, true),
+          cvode("CVODE Adams with roots", CV_ADAMS, true),
           cvode("CVODE BDF", CV_BDF, false),
-          cvode("CVODE BDF, roots", CV_BDF, true)};
+          cvode("CVODE BDF with roots", CV_BDF, true)};
 }
 
 }  // namespace tribodyn

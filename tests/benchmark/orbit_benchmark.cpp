@@ -1,43 +1,46 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "core/periodic/period_correction.h"
-#include "core/periodic/steady_state.h"
 #include "core/study/operating_point.h"
 #include "core/study/screening.h"
-#include "core/vehicle/vehicle.h"
-#include "tests/benchmark/marching_solvers.h"
+#include "tests/benchmark/approach.h"
 #include "tests/benchmark/measurements.h"
 #include "tests/support/figure_error.h"
 #include "tests/support/reference_scene.h"
 
 // Work against true error at eight operating points: this solver at several tolerances, against
-// marching by common integrators, all with the same batch friction kernel in one run.
+// periodic solvers (periodic_rivals.h) and marching by common integrators (marching_solvers.h), all
+// with the same batch friction kernel in one run.
 //
-// Marching starts from the static equilibrium, corrects T_s and the mean speed after every mesh
-// cycle, discards cycles until the RMS inefficiency of each cycle is and stays within the error,
-// and records one more. It is told the right answer to know when to stop, and judged by that one
-// figure; this solver starts without knowing anything, must find out by itself when to stop, and is
-// judged by the worst of both inefficiencies, torque and extremes of the transmission error. The
-// truth is the event-exact march at a tolerance of 1e-10. Times are medians of interleaved turns.
+// All rivals start from the static equilibrium, and each aims at errors of 1e-3 to 1e-7, with the
+// accuracy that reaches the target in the least time. Marches correct T_s and the mean speed after
+// every mesh cycle, discard cycles until the RMS inefficiency of each cycle is and stays within the
+// target, and record one more. Periodic solvers march as few cycles as lead to the response, often
+// none, then iterate until each iterate is and stays within the target. Rivals are told the right
+// answer to know all of that, and judged by that one figure; this solver starts without knowing
+// anything, must find out by itself how many steps it needs, how large its error is and whether the
+// response is stable, and is judged by the worst of both inefficiencies, torque and extremes of the
+// transmission error. "Unaided" periodic solvers are told the cycles only: they refine until two
+// answers agree within the target.
 //
-// Where the machine has more than AVX2, smooth points are solved with AVX2 as well, by both. And
-// the figures of all points are computed with all sensitivities and without, in turns, by processor
-// time at a tolerance of 1e-3.
+// The truth is the event-exact march at a tolerance of 1e-10. Times are processor times, medians of
+// interleaved turns.
+//
+// Where the machine has more than AVX2, smooth points are solved with AVX2 as well, by this solver
+// and by CVODE's Adams. And the figures of all points are computed with all sensitivities and
+// without, in turns, at a tolerance of 1e-3.
 namespace tribodyn {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Of an even number the mean of the middle two.
 double middle(std::vector<double> values) {
@@ -46,31 +49,20 @@ double middle(std::vector<double> values) {
   return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
 }
 
-double microseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-}
-
 /// Microseconds of one run: of the first where it is long, else of as many as fill a few
 /// milliseconds, so that what ran before has left the processor's caches.
 template <class Run>
 double time_of(Run&& run) {
   constexpr double kLong = 3000;
-  const auto first = Clock::now();
+  const double first = processor_seconds();
   run();
   const double one = microseconds_since(first);
   if (one > kLong) return one;
   const int count = 1 + static_cast<int>(kLong / one);
-  const auto start = Clock::now();
+  const double start = processor_seconds();
   for (int i = 0; i < count; ++i) run();
   return microseconds_since(start) / count;
 }
-
-struct Place {
-  const char* name;
-  double kilometres_per_hour;
-  PointStart start;
-  double error;  // asked of all
-};
 
 constexpr Place kPlaces[] = {{"20", 20, PointStart::kQuasiStatic, 1e-3},
                              {"37.5", 37.5, PointStart::kQuasiStatic, 1e-3},
@@ -80,12 +72,6 @@ constexpr Place kPlaces[] = {{"20", 20, PointStart::kQuasiStatic, 1e-3},
                              {"80", 80, PointStart::kQuasiStatic, 1e-4},
                              {"100", 100, PointStart::kQuasiStatic, 1e-3},
                              {"140", 140, PointStart::kQuasiStatic, 1e-3}};
-
-struct Run {
-  long contacts = 0;
-  double microseconds = 0;
-  double error = 0;
-};
 
 PointResult truth_of(PreparedScene& scene, const OperatingCondition& condition, PointStart start) {
   PointOptions options;
@@ -97,76 +83,17 @@ PointResult truth_of(PreparedScene& scene, const OperatingCondition& condition, 
   return solve_prepared_point(scene, condition, options);
 }
 
-/// One way through the transient, cycle by cycle.
-struct Transient {
-  std::vector<double> inefficiency, microseconds;
-  std::vector<long> contacts;
-};
-
-Transient march(PreparedScene& scene, const Place& place, const MarchingSolver& solver,
-                double accuracy, const PointResult& truth) {
-  constexpr int kMostCycles = 400;
-  const GearPairSystem& system = scene.gear_set().system();
-  ContactTally tally;
-  ContactSolver contacts(scene.contacts(), tally);
-  const double ratio =
-      static_cast<double>(system.mesh().pinion_teeth()) / system.mesh().gear_teeth();
-  const double wheel = wheel_torque(scene.scene().vehicle, place.kilometres_per_hour / 3.6, 0, 0);
-  Transient out;
-  const auto start = Clock::now();
-  Torques torques{wheel * ratio, wheel};
-  const double speed = truth.mean_pinion_speed;
-  MarchState state = static_start(system, torques, speed, 0, 0,
-                                  place.start == PointStart::kLargeVibration ? 60e-6 : 0);
-  ScaledProblem problem(system, torques, contacts, speed);
-  const CycleStepper step = solver.make(problem, accuracy);
-  int settled = 0;
-  for (int cycle = 0; cycle < kMostCycles && settled < 40; ++cycle) {
-    const MarchState before = state;
-    step(state);
-    const double torque = torques.pinion;
-    out.inefficiency.push_back(100 / std::abs(torque) *
-                               std::sqrt(state[kLossShareSquared] / state[kTime]));
-    correct_period(system, before, 1, speed, false, torques, state);
-    out.microseconds.push_back(microseconds_since(start));
-    out.contacts.push_back(tally.solutions);
-    const double error = std::abs(out.inefficiency.back() / truth.inefficiency_rms.value() - 1);
-    settled = error < 0.3 * place.error ? settled + 1 : 0;
-    if (!std::isfinite(error)) break;
-  }
-  return out;
-}
-
-/// What it takes until each cycle is and stays within an error, and one recorded cycle on top;
-/// nothing where that never happens.
-bool cost_of(const Transient& transient, double truth, double error, int recorded, Run& out) {
-  int first = static_cast<int>(transient.inefficiency.size());
-  while (first > 0 && std::abs(transient.inefficiency[first - 1] / truth - 1) <= error) --first;
-  const int last = first + recorded;
-  if (first == static_cast<int>(transient.inefficiency.size())) return false;
-  const auto scaled = [&](const auto& values) {
-    // Cycles beyond the last cost what the last ones did.
-    const int most = static_cast<int>(values.size()) - 1, half = most / 2;
-    if (last <= most) return static_cast<double>(values[last]);
-    return static_cast<double>(values[most]) +
-           (last - most) * static_cast<double>(values[most] - values[half]) / (most - half);
-  };
-  out.microseconds = scaled(transient.microseconds);
-  out.contacts = static_cast<long>(scaled(transient.contacts));
-  out.error = std::abs(transient.inefficiency[first] / truth - 1);
-  return true;
-}
-
 const char* const kShooting = "shooting";
 const char* const kMarch = "event-exact march";
 const char* const kAdams = "CVODE Adams";
-const char* const kAdamsRoots = "CVODE Adams, roots";
+const char* const kAdamsRoots = "CVODE Adams with roots";
+const char* const kUnaided = " unaided";
 
-/// What all methods take at a place, by name and accuracy.
+/// What all methods take at a place: this solver by tolerance, rivals by target.
 struct Contest {
   std::map<std::string, std::map<double, std::vector<double>>> microseconds;
   std::map<std::string, std::map<double, Run>> run;
-  std::map<std::string, double> fifty;  // least of 50 recorded cycles [us]
+  std::map<std::string, double> fifty;  // least of 50 recorded cycles of marches [us]
 };
 
 /// One turn of this solver.
@@ -185,35 +112,69 @@ void solve_in_turn(PreparedScene& prepared, const Place& place, const PointResul
   PointFigures r;
   contest.microseconds[name][tolerance].push_back(
       time_of([&] { r = solve_point_figures(prepared, condition, options); }));
-  contest.run[name][tolerance] = {r.contact_solutions, 0, true_error(r, truth)};
+  contest.run[name][tolerance] = {tolerance, r.contact_solutions, 0, true_error(r, truth)};
 }
 
 void shoot_in_turn(PreparedScene& prepared, const Place& place, const PointResult& truth,
                    Contest& contest) {
-  for (const double tolerance : {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6}) {
+  for (const double tolerance : {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6, 1e-7}) {
     solve_in_turn(prepared, place, truth, kShooting, SteadyStateMethod::kAutomatic, tolerance,
                   contest);
   }
 }
 
-/// One turn of a common integrator.
+/// Enters a rival's approaches, by accuracy: the cheapest one for each target.
+void enter(const std::string& name, const Place& place, const PointResult& truth,
+           const std::map<double, Approach>& approaches, int recorded, Contest& contest) {
+  constexpr int kMany = 50;
+  const double exact = truth.inefficiency_rms.value();
+  for (const double target : kTargets) {
+    std::optional<Run> best;
+    for (const auto& [accuracy, approach] : approaches) {
+      std::optional<Run> one = cost_of(approach, exact, target, recorded);
+      if (!one) continue;
+      one->accuracy = accuracy;
+      if (!best || one->microseconds < best->microseconds) best = one;
+      if (recorded == 0 || target != place.error) continue;
+      const double many = cost_of(approach, exact, target, kMany)->microseconds;
+      double& least = contest.fifty.try_emplace(name, many).first->second;
+      least = std::min(least, many);
+    }
+    if (!best) continue;
+    contest.microseconds[name][target].push_back(best->microseconds);
+    contest.run[name][target] = *best;
+  }
+}
+
+/// One turn of a common integrator, for targets down to the least.
 void march_in_turn(PreparedScene& prepared, const Place& place, const PointResult& truth,
-                   const MarchingSolver& solver, Contest& contest) {
+                   const MarchingSolver& solver, double least_target, Contest& contest) {
+  std::map<double, Approach> approaches;
   for (const double accuracy : solver.accuracies) {
-    Transient transient;
     try {
-      transient = march(prepared, place, solver, accuracy, truth);
+      approaches[accuracy] = march(prepared, place, solver, accuracy, least_target, truth);
     } catch (const std::exception&) {
       continue;  // its tolerance is too coarse for it
     }
-    Run one, many;
-    const double exact = truth.inefficiency_rms.value();
-    if (!cost_of(transient, exact, place.error, 1, one)) continue;
-    cost_of(transient, exact, place.error, 50, many);
-    contest.microseconds[solver.name][accuracy].push_back(one.microseconds);
-    contest.run[solver.name][accuracy] = one;
-    double& best = contest.fifty.try_emplace(solver.name, many.microseconds).first->second;
-    best = std::min(best, many.microseconds);
+  }
+  enter(solver.name, place, truth, approaches, 1, contest);
+}
+
+/// One turn of a periodic solver.
+void iterate_in_turn(PreparedScene& prepared, const Place& place, const PointResult& truth,
+                     const PeriodicRival& rival, Contest& contest) {
+  std::map<double, Approach> approaches;
+  for (const double accuracy : rival.accuracies) {
+    approaches[accuracy] = iterate(prepared, place, rival, accuracy, truth);
+  }
+  enter(rival.name, place, truth, approaches, 0, contest);
+  const std::string unaided = rival.name + kUnaided;
+  for (const double target : kTargets) {
+    const std::optional<Run> run =
+        unaided_cost_of(rival, approaches, truth.inefficiency_rms.value(), target);
+    if (!run) continue;
+    contest.microseconds[unaided][target].push_back(run->microseconds);
+    contest.run[unaided][target] = *run;
   }
 }
 
@@ -222,8 +183,8 @@ void march_in_turn(PreparedScene& prepared, const Place& place, const PointResul
 std::map<std::string, double> least_times(const Place& place, Contest& contest) {
   std::map<std::string, double> best;
   for (auto& [name, runs] : contest.run) {
-    for (auto& [accuracy, one] : runs) {
-      one.microseconds = median(contest.microseconds[name][accuracy]);
+    for (auto& [aim, one] : runs) {
+      one.microseconds = median(contest.microseconds[name][aim]);
       if (one.error > place.error) continue;
       double& least = best.try_emplace(name, std::numeric_limits<double>::infinity()).first->second;
       least = std::min(least, one.microseconds);
@@ -237,19 +198,20 @@ void print_and_store(const Place& place, const Contest& contest,
   std::printf("\n%s km/h, error %g\n%-22s %10s %10s %12s %10s\n", place.name, place.error, "method",
               "accuracy", "contacts", "microseconds", "error");
   for (const auto& [name, runs] : contest.run) {
-    for (const auto& [accuracy, one] : runs) {
-      csv << place.name << ',' << '"' << name << '"' << ',' << accuracy << ',' << one.contacts
+    for (const auto& [aim, one] : runs) {
+      csv << place.name << ',' << '"' << name << '"' << ',' << one.accuracy << ',' << one.contacts
           << ',' << one.microseconds << ',' << one.error << '\n';
     }
   }
   for (const auto& [name, least] : best) {
-    for (const auto& [accuracy, one] : contest.run.at(name)) {
+    for (const auto& [aim, one] : contest.run.at(name)) {
       if (one.microseconds != least) continue;
-      std::printf("%-22s %10g %10ld %12.1f %10.1e", name.c_str(), accuracy, one.contacts, least,
+      std::printf("%-22s %10g %10ld %12.1f %10.1e", name.c_str(), one.accuracy, one.contacts, least,
                   one.error);
       const auto fifty = contest.fifty.find(name);
       if (fifty != contest.fifty.end()) std::printf("   50 cycles: %.0f", fifty->second);
       std::printf("\n");
+      break;
     }
   }
 }
@@ -262,7 +224,21 @@ double adams_over_shooting(const std::map<std::string, double>& best) {
   return baseline / best.at(kShooting);
 }
 
-/// The same at a smooth point with another instruction set.
+/// Times of the better periodic solver over those of shooting; nullopt if none gets there.
+/// `suffix`: of its name, kUnaided or none.
+std::optional<double> rival_over_shooting(const std::map<std::string, double>& best,
+                                          const std::vector<PeriodicRival>& rivals,
+                                          const std::string& suffix) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const PeriodicRival& rival : rivals) {
+    const auto found = best.find(rival.name + suffix);
+    if (found != best.end()) least = std::min(least, found->second);
+  }
+  if (std::isinf(least)) return std::nullopt;
+  return least / best.at(kShooting);
+}
+
+/// The same of CVODE at a smooth point with another instruction set.
 double adams_over_shooting(PreparedScene& prepared, const Place& place, const PointResult& truth,
                            const std::vector<MarchingSolver>& solvers, int turns) {
   Contest contest;
@@ -270,7 +246,7 @@ double adams_over_shooting(PreparedScene& prepared, const Place& place, const Po
     shoot_in_turn(prepared, place, truth, contest);
     for (const MarchingSolver& solver : solvers) {
       if (solver.name != kAdams && solver.name != kAdamsRoots) continue;
-      march_in_turn(prepared, place, truth, solver, contest);
+      march_in_turn(prepared, place, truth, solver, place.error, contest);
     }
   }
   return adams_over_shooting(least_times(place, contest));
@@ -305,9 +281,12 @@ int run(const std::string& results, const std::string& table, int turns) {
   std::optional<PreparedScene> by_avx2;  // where the machine has more
   if (widest == InstructionSet::kAvx512) by_avx2.emplace(scene, nullptr, InstructionSet::kAvx2);
   const std::vector<MarchingSolver> solvers = marching_solvers();
+  const std::vector<PeriodicRival> rivals = periodic_rivals();
   std::ofstream csv(table);
   csv << "place,method,accuracy,contacts,microseconds,true_error\n";
-  std::map<bool, std::vector<double>> ratios, times, sensitivities;  // by whether contact is lost
+  // By whether contact is lost:
+  std::map<bool, std::vector<double>> ratios, times, sensitivities;
+  std::map<std::string, std::map<bool, std::vector<double>>> rival_ratios;  // by suffix
   std::vector<double> avx2_ratios;
   std::vector<Measurement> out;
   std::printf("%s; medians of %d turns\n", machine_name().c_str(), turns);
@@ -323,7 +302,10 @@ int run(const std::string& results, const std::string& table, int turns) {
                       contest);
       }
       for (const MarchingSolver& solver : solvers) {
-        march_in_turn(prepared, place, truth, solver, contest);
+        march_in_turn(prepared, place, truth, solver, *std::prev(std::end(kTargets)), contest);
+      }
+      for (const PeriodicRival& rival : rivals) {
+        iterate_in_turn(prepared, place, truth, rival, contest);
       }
     }
     const std::map<std::string, double> best = least_times(place, contest);
@@ -342,6 +324,12 @@ int run(const std::string& results, const std::string& table, int turns) {
     const std::string at = std::string(", ") + place.name + " km/h";
     out.push_back({"shooting" + at, best.at(kShooting), "us", {}});
     out.push_back({"CVODE Adams over shooting" + at, ratio, "-", {}});
+    for (const std::string suffix : {"", kUnaided}) {
+      const std::optional<double> rival = rival_over_shooting(best, rivals, suffix);
+      if (!rival) continue;
+      out.push_back({"periodic rival" + suffix + " over shooting" + at, *rival, "-", {}});
+      if (asked) rival_ratios[suffix][truth.contact_loss].push_back(*rival);
+    }
     out.push_back({"all sensitivities over the figures" + at,
                    sensitivities[truth.contact_loss].back(),
                    "-",
@@ -357,6 +345,16 @@ int run(const std::string& results, const std::string& table, int turns) {
   }
   out.push_back({"CVODE Adams over shooting, vibro-impact points, error 1e-4", middle(ratios[true]),
                  "-", 60, false});
+  for (const auto& [suffix, by_contact_loss] : rival_ratios) {
+    for (const auto& [contact_loss, all] : by_contact_loss) {
+      const std::string over = "periodic rival" + suffix + " over shooting, ";
+      out.push_back(
+          {over + (contact_loss ? "vibro-impact points, error 1e-4" : "smooth points, error 1e-3"),
+           middle(all),
+           "-",
+           {}});
+    }
+  }
   out.push_back({"shooting, smooth points, error 1e-3", middle(times[false]), "us", 30.0});
   out.push_back({"shooting, vibro-impact points, error 1e-4", middle(times[true]), "us", 300.0});
   out.push_back({"all sensitivities over the figures, smooth point where they cost most",

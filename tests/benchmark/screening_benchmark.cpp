@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <exception>
 #include <memory>
-#include <random>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -15,6 +14,7 @@
 #include "core/study/screening.h"
 #include "core/study/speed_sweep.h"
 #include "tests/benchmark/measurements.h"
+#include "tests/benchmark/varied_scenes.h"
 #include "tests/support/contact_batch.h"
 #include "tests/support/realistic_contacts.h"
 #include "tests/support/reference_scene.h"
@@ -31,29 +31,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::vector<Scene> candidates(int fluids) {
-  std::mt19937_64 random(20261121);
-  const auto vary = [&](double& value, double share) {
-    value *= std::uniform_real_distribution<double>(1 - share, 1 + share)(random);
-  };
-  const Scene base = reference_scene();
-  std::vector<Scene> out;
-  for (int i = 0; i < fluids; ++i) {
-    Scene scene = base;
-    scene.lubricant = reference_lubricant(1 + i % 3);
-    vary(scene.lubricant.vogel_viscosity_prefactor, 0.1);
-    vary(scene.lubricant.pressure_viscosity_coefficient, 0.1);
-    vary(scene.lubricant.relaxation_time, 0.3);
-    vary(scene.lubricant.limiting_shear_stress_coefficient, 0.1);
-    vary(scene.boundary.asperity_friction_coefficient, 0.1);
-    for (const double sump : {20.0, 40.0, 90.0}) {
-      scene.sump_temperature = sump + 273.15;
-      out.push_back(scene);
-    }
-  }
-  return out;
 }
 
 struct Work {
@@ -203,7 +180,7 @@ Work sweep() {
 }
 
 int run(const std::string& path, int fluids, int turns) {
-  const std::vector<Scene> scenes = candidates(fluids);
+  const std::vector<Scene> scenes = varied_scenes(fluids);
   const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::vector<double> evaluation, of_sweep, per_point, over_threads, sweep_ratio, sweep_units, rate,
       contact_figures, contact_figures_share;

@@ -11,6 +11,7 @@
 #include "core/driveline/linear_modes.h"
 #include "core/refusal.h"
 #include "core/study/operating_point.h"
+#include "core/study/point_by_marching.h"
 #include "core/study/screening.h"
 #include "core/study/speed_sweep.h"
 #include "tests/support/cruise.h"
@@ -100,6 +101,55 @@ TEST(HardCases, LoadsThatPassFromPairToPairWithinAnIntervalAreInTheErrorOrInTheS
       const PointFigures screened = screen_point(prepared, cruise(speed), {});
       EXPECT_LE(true_error(screened, marched_from(scene, cruise(speed), r)),
                 screened.estimated_relative_error.value());
+      if (kShortRun) return;
+    }
+  }
+}
+
+/// That an answer is settled within its error, or says that it is not and is an average.
+void expect_settled_or_said(const PointResult& r) {
+  EXPECT_LT(static_cast<double>(r.statistics.contact_solutions),
+            1.3 * kMostContactsOfAutomaticMarch);
+  if (r.settled) {
+    EXPECT_LE(r.estimated_relative_error.value(), PointOptions{}.tolerance);
+  } else {
+    EXPECT_TRUE(warns(r.warnings, "NOT_SETTLED"));
+  }
+}
+
+// The response barely attracts, and is approached in thousands of mesh cycles.
+TEST(HardCases, AShaftThatHardlyDampsIsAnsweredWithinTheLimitOfWork) {
+  const OperatingCondition condition = cruise(97.6);
+  const PointResult damped = solve_operating_point(reference_scene(), condition, {});
+  for (const double factor : {0.1, 0.03, 0.01}) {
+    SCOPED_TRACE(factor);
+    Scene scene = reference_scene();
+    scene.gear_set.dynamics.pinion_shaft_damping *= factor;
+    scene.gear_set.dynamics.gear_shaft_damping *= factor;
+    const PointResult r = solve_operating_point(scene, condition, {});
+    expect_settled_or_said(r);
+    EXPECT_NEAR(r.inefficiency_energy_mean.value() / damped.inefficiency_energy_mean.value(), 1,
+                3e-3);
+    if (kShortRun) return;
+  }
+}
+
+TEST(HardCases, TorquesNearZeroAreSettledOrSayThatTheyAreNot) {
+  const Scene scene = reference_scene();
+  PreparedScene prepared(scene);
+  for (const double torque : {0.05, 5e-3, 1e-3, 1e-4, -0.02}) {
+    for (const double speed : {20.0, 100.0, 200.0, 300.0}) {
+      if (!full_run() && speed == 200 && torque != 1e-4) continue;
+      SCOPED_TRACE(testing::Message() << torque << " N m at " << speed << " rad/s");
+      const OperatingCondition condition = prescribed(torque, speed);
+      const PointResult r = solve_prepared_point(prepared, condition, {});
+      expect_settled_or_said(r);
+      if (r.settled) {
+        EXPECT_LE(true_error(r, marched_from(scene, condition, r)),
+                  r.estimated_relative_error.value());
+      } else {
+        EXPECT_TRUE(warns(r.warnings, "RATTLES"));
+      }
       if (kShortRun) return;
     }
   }

@@ -254,8 +254,8 @@ GearSet without_series(GearSet gear_set) {
   MeshSeries& s = gear_set.series;
   for (FourierSeries* each : {&s.pinion_contact_radius, &s.gear_contact_radius, &s.mesh_stiffness,
                               &s.static_transmission_error}) {
-    each->sine.resize(40, 0.0);
-    each->cosine.resize(40, 0.0);
+    each->sine.resize(80, 0.0);
+    each->cosine.resize(80, 0.0);
   }
   return gear_set;
 }

@@ -155,6 +155,7 @@ TEST_P(SoftShafts, GiveTheFiguresOfConstantTorquesOnTheGears) {
   PointOptions options;
   options.model = PointModel::kFull;
   options.tolerance = 1e-6;
+  options.method = SteadyStateMethod::kMarch;
   const PointResult r = solve_operating_point(scene, cruise(GetParam()), options);
   ASSERT_EQ(r.period_in_mesh_cycles, 1);
   EXPECT_EQ(r.contact_loss, GetParam() == 72.5);
