@@ -239,6 +239,7 @@ TEST_F(GrpcTest, ACurveByShootingNamesItsMissingPoints) {
   curve->Clear();
   curve->add_speeds_kilometres_per_hour(100);
   curve->add_speeds_kilometres_per_hour(150);
+  curve->set_independent_points(true);  // along a branch it is found
   v1::Simulation created;
   ASSERT_TRUE(create(request, &created).ok());
   ASSERT_TRUE(eventually([&] { return get(created.name()).state() >= v1::Simulation::SUCCEEDED; }));
