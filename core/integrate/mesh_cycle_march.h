@@ -132,9 +132,9 @@ class MeshCycleSystem {
   /// Up to the next sample of the tables. Without a load there is no friction, and the tables do
   /// not matter: then to the end of the mesh cycle, once s and phase agree.
   void start_piece(double s, double phase, bool load_begins) {
-    constexpr double kRounding = 1e-13;
+    constexpr double kPhaseRounding = 1e-13;
     const bool has_load = regime_.side != 0 && regime_.loaded;
-    piece_end_ = !has_load && std::abs(s - phase) < kRounding
+    piece_end_ = !has_load && std::abs(s - phase) < kPhaseRounding
                      ? 1
                      : static_cast<double>(interval_ + 1) / system_.mesh().intervals();
     piece_ = GradedPhase(s, phase, piece_end_, load_begins, gives_load());

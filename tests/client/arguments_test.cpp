@@ -159,14 +159,18 @@ TEST(Arguments, AcceptSeveralLubricantsAndJobs) {
 }
 
 TEST(Help, EveryCommandHasExamplesThatParse) {
-  for (const Command& command : all_commands()) {
+  CommonOptions options;
+  FlagList common_flags;
+  add_common_flags(common_flags, options);
+  const std::vector<Command> commands = all_commands();
+  for (const Command& command : commands) {
     EXPECT_FALSE(command.examples.empty()) << command.path;
     for (const std::string& example : command.examples) {
       std::vector<std::string> words = split(example, ' ');
       words.erase(words.begin());
-      const Outcome outcome(words);
-      EXPECT_EQ(outcome.path, command.path);
-      EXPECT_TRUE(outcome.complaints.empty()) << example << ": " << outcome.complaints.front();
+      const Parsed parsed = parse_arguments(words, commands, common_flags);
+      EXPECT_EQ(parsed.command, &command) << example;
+      EXPECT_TRUE(parsed.complaints.empty()) << example << ": " << parsed.complaints.front();
     }
   }
 }
