@@ -159,13 +159,21 @@ TEST(Arguments, AcceptSeveralLubricantsAndJobs) {
 }
 
 TEST(Help, EveryCommandHasExamplesThatParse) {
-  CommonOptions options;
-  FlagList common_flags;
-  add_common_flags(common_flags, options);
-  const std::vector<Command> commands = all_commands();
-  for (const Command& command : commands) {
+  for (const Command& command : all_commands()) {
     EXPECT_FALSE(command.examples.empty()) << command.path;
-    for (const std::string& example : command.examples) {
+  }
+  // Flags keep what they have read: the nth example of each command is parsed by fresh commands.
+  bool is_any_left = true;
+  for (std::size_t n = 0; is_any_left; ++n) {
+    CommonOptions options;
+    FlagList common_flags;
+    add_common_flags(common_flags, options);
+    const std::vector<Command> commands = all_commands();
+    is_any_left = false;
+    for (const Command& command : commands) {
+      if (n >= command.examples.size()) continue;
+      is_any_left = true;
+      const std::string& example = command.examples[n];
       std::vector<std::string> words = split(example, ' ');
       words.erase(words.begin());
       const Parsed parsed = parse_arguments(words, commands, common_flags);

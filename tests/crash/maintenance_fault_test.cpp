@@ -224,8 +224,8 @@ class MaintenanceOnAFaultyDisk : public MaintenanceFault {
   void fail_each_operation(const Action& action, const Check& check) {
     using Operation = FaultyVfs::Operation;
     for (const Operation operation : {Operation::kOpen, Operation::kWrite, Operation::kSync}) {
-      const int slowed = kUnderAddressSanitizer ? 40 : 10;
-      const int stride = operation == Operation::kWrite ? slowed : 1;
+      const bool many = operation == Operation::kWrite;
+      const int stride = kUnderAddressSanitizer ? (many ? 80 : 2) : many ? 10 : 1;
       for (const bool lasting : {false, true}) {
         int n = 1;
         for (bool was_met = true; was_met && !HasFailure(); n += stride) {

@@ -26,6 +26,7 @@
 #include "server/support/processor_slots.h"
 #include "tests/service/resource_calls.h"
 #include "tests/service/support.h"
+#include "tests/support/run_length.h"
 #include "tribodyn/v1/cycles.pb.h"
 #include "tribodyn/v1/simulations.pb.h"
 
@@ -263,7 +264,7 @@ TEST_F(CallDispatcherTest, ReadsDoNotWaitForDriveCycles) {
 TEST_F(CallDispatcherTest, ReadsDoNotWaitForHeavyCalls) {
   std::vector<std::unique_ptr<TestCall>> heavy;
   for (int i = 0; i < 4; ++i) {
-    v1::BatchCreateLubricantsRequest request = batch(2000);
+    v1::BatchCreateLubricantsRequest request = batch(kUnderSanitizer ? 500 : 2000);
     request.set_validate_only(true);
     request.mutable_read_mask()->add_paths("name");
     heavy.push_back(std::make_unique<TestCall>(request));

@@ -62,7 +62,7 @@ TEST_F(DaemonTest, ResultsSurviveAKillAndUnfinishedSimulationsRunAgain) {
 }
 
 TEST_F(DaemonTest, AKilledServerHasWrittenABatchCompletelyOrNotAtAll) {
-  constexpr int kSize = 2000;
+  constexpr int kSize = kUnderAddressSanitizer ? 300 : 2000;
   v1::BatchCreateLubricantsRequest batch;
   v1::Lubricant fluid = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   for (int i = 0; i < kSize; ++i) {

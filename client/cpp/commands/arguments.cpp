@@ -119,11 +119,19 @@ Parsed parse_arguments(const std::vector<std::string>& arguments,
   GivenTexts given;
   add_flags(root, common_flags, given);
   std::map<const CLI::App*, const Command*> by_app;
+  // CLI11 compares each flag with all others of its command: only where they may be read.
+  const auto may_be_meant = [&](const Command& command) {
+    const std::vector<std::string> words = split(command.path, ' ');
+    return std::all_of(words.begin(), words.end(), [&](const std::string& word) {
+      return std::find(arguments.begin(), arguments.end(), word) != arguments.end();
+    });
+  };
   for (const Command& command : commands) {
     CLI::App& app = add_command(root, command);
+    by_app[&app] = &command;
+    if (!may_be_meant(command)) continue;
     add_flags(app, command.flags, given);
     add_flags(app, common_flags, given, command.flags);
-    by_app[&app] = &command;
   }
 
   Parsed parsed;
