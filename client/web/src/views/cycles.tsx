@@ -279,7 +279,7 @@ function Totals({ fluids, names, reference }: { fluids: CycleLubricant[]; names:
                 <th scope="row"><Swatch series={k} />{names[k]}</th>
                 {fluid.refusal_reason ? <td colSpan={6}><span class="problem">{fluid.refusal_message}</span></td> : (
                   <>
-                    <td class="number"><strong><Num value={fluid.loss_joules} unit={KILOJOULES} error={fluid.map_error_joules + fluid.solver_error_joules} /></strong></td>
+                    <td class="number"><strong><Num value={fluid.loss_joules} unit={KILOJOULES} error={(fluid.map_error_joules ?? 0) + (fluid.solver_error_joules ?? 0)} /></strong></td>
                     <td class="number"><Num value={fluid.input_joules} unit={KILOJOULES} /></td>
                     <td class="number"><Num value={fluid.inefficiency_percent} unit={PERCENT} error={0.001} /></td>
                     {fluids.length > 1 && <td class="number">{k === 0 ? '' : <Num value={all(fluid)?.loss_difference_percent} unit={PERCENT} error={0.1} isSigned />}</td>}
