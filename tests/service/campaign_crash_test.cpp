@@ -4,6 +4,7 @@
 #include <csignal>
 #include <string>
 
+#include "server/simulation/campaign_columns.h"
 #include "tests/service/grpc_fixture.h"
 #include "tests/support/run_length.h"
 #include "tribodyn/v1/campaigns.grpc.pb.h"
@@ -90,7 +91,7 @@ TEST_F(CampaignCrashTest, AKilledServerContinuesAtTheMissingRowsWithTheSameBits)
   ASSERT_TRUE(
       eventually([&] { return get_campaign(undisturbed).state() == v1::Campaign::SUCCEEDED; }));
   const std::string expected = bits(undisturbed);
-  EXPECT_EQ(expected.size(), std::size_t{50'000} * 13 * sizeof(double));
+  EXPECT_EQ(expected.size(), std::size_t{50'000} * kCampaignColumns.size() * sizeof(double));
   EXPECT_TRUE(bits(name) == expected);
 }
 
