@@ -99,9 +99,11 @@ ResourceKind make_kind(const std::string& field, const char* collection, const c
 /// Returns the visitor's result for the resource in its own type.
 template <class Answer, class Resource, class Visitor>
 Answer& visit(Resource& resource, const Visitor& visitor) {
+// A type cannot be in parentheses. NOLINTBEGIN(bugprone-macro-parentheses)
 #define TRIBODYN_VISIT(Type, field, collection, seed)                                   \
   using Type = std::conditional_t<std::is_const_v<Resource>, const v1::Type, v1::Type>; \
   if (auto* as = dynamic_cast<Type*>(&resource)) return visitor(*as);
+  // NOLINTEND(bugprone-macro-parentheses)
   TRIBODYN_RESOURCE_KINDS(TRIBODYN_VISIT)
 #undef TRIBODYN_VISIT
   throw std::logic_error(resource.GetTypeName() + " is not a resource");
