@@ -54,8 +54,8 @@ Refusal too_slow_to_march(const PointProblem& problem, const WorkLimit& limit) {
       "TOO_SLOW_TO_MARCH",
       "at a mean pinion speed of " + number_text(speed) + " rad/s the mesh may oscillate " +
           number_text(mesh_oscillations(problem.system(), speed), 2) +
-          " times in a mesh cycle: the march ended after " + number_text(limit.most_contacts(), 2) +
-          " contact solutions (" +
+          " times in a mesh cycle: the march ended after work worth " +
+          number_text(limit.most_contacts(), 2) + " contact solutions (" +
           (is_automatic(options)
                ? std::string("method = AUTOMATIC takes no more; method = MARCH does")
                : "maximum_mesh_cycles = " + std::to_string(options.maximum_mesh_cycles) +

@@ -12,14 +12,14 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr char kUsualAxleFigure[] = "inefficiency_energy_mean_percent";
 
 void append_axle_figures(const PointFigures& figures, std::vector<double>& out) {
-  out.insert(out.end(),
-             {figures.pinion_torque, figures.wheel_torque, figures.inefficiency_rms.value_or(kNone),
-              figures.inefficiency_energy_mean.value_or(kNone), figures.mesh_loss_power,
-              figures.dte_minimum, figures.dte_maximum, figures.contact_loss ? 1.0 : 0.0,
-              figures.settled ? 1.0 : 0.0, static_cast<double>(figures.period_in_mesh_cycles),
-              figures.estimated_relative_error.value_or(kNone),
-              static_cast<double>(to_message(figures.model)),
-              responses_coexist(figures) ? 1.0 : 0.0});
+  out.insert(
+      out.end(),
+      {figures.pinion_torque, figures.wheel_torque, figures.inefficiency_rms.value_or(kNone),
+       figures.inefficiency_energy_mean.value_or(kNone), figures.mesh_loss_power,
+       figures.dte_minimum, figures.dte_maximum, figures.contact_loss ? 1.0 : 0.0,
+       figures.settled ? 1.0 : 0.0, static_cast<double>(figures.period_in_mesh_cycles),
+       figures.estimated_relative_error.value_or(kNone),
+       static_cast<double>(to_message(figures.model)), responses_coexist(figures) ? 1.0 : 0.0});
 }
 
 void append_axle_contact(const PointFigures& figures, std::vector<double>& out) {

@@ -553,7 +553,7 @@ WildPlace wild_place(std::mt19937_64& random, double inertia_factor = 5, double 
 
 // Extrapolation once led to a mesh approach of half a metre there, whence no step succeeds.
 TEST(HardPoints, InertiasAThousandTimesOffAreMarchedToAnAnswer) {
-  if (kShortRun) GTEST_SKIP() << "a minute and a half under ASan";
+  if (kShortRun) GTEST_SKIP() << "takes a minute and a half under ASan; the release stage runs it";
   std::mt19937_64 random(5);
   for (int i = 0; i <= 252; ++i) {
     const WildPlace place = wild_place(random, 1000, 30);

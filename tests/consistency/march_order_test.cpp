@@ -271,7 +271,7 @@ std::vector<InitialValueProblem> problems(double speed, double torque, double ex
 TEST_F(OrderTest, InContact) { expect_fifth_order_of_even_steps(problems(15, 6, 1e-6, 3)); }
 
 TEST_F(OrderTest, InContactWithLittleDamping) {
-  if (!full_run()) GTEST_SKIP() << "a minute";
+  if (!full_run()) GTEST_SKIP() << "takes a minute: only with TRIBODYN_FULL=1";
   scene_.gear_set.dynamics.mesh_damping *= 0.1;
   expect_fifth_order_of_even_steps(problems(3, 6, 1e-6, 3));
 }
@@ -282,7 +282,7 @@ TEST_F(OrderTest, AcrossLossesOfContact) {
 }
 
 TEST_F(OrderTest, AcrossManyLossesOfContact) {
-  if (!full_run()) GTEST_SKIP() << "half a minute";
+  if (!full_run()) GTEST_SKIP() << "takes half a minute: only with TRIBODYN_FULL=1";
   expect_fifth_order_of_steps_by_tolerance(problems(3, 1.5, 0.675e-6, 2), 6);
 }
 

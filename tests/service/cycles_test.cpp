@@ -128,9 +128,9 @@ TEST(EvaluateCycle, CarriesTheWarningsOfItsPoints) {
   request.clear_named_cycle();
   for (const double second : {0.0, 10.0, 20.0}) add_place(request, second, 120);
   const v1::CycleLubricant lubricant = run_cycle(request).lubricants(0);
-  const bool warns = std::any_of(
-      lubricant.warnings().begin(), lubricant.warnings().end(),
-      [](const v1::RangeWarning& each) { return each.code() == "RESPONSES_COEXIST"; });
+  const bool warns =
+      std::any_of(lubricant.warnings().begin(), lubricant.warnings().end(),
+                  [](const v1::RangeWarning& each) { return each.code() == "RESPONSES_COEXIST"; });
   EXPECT_TRUE(warns);
 }
 
