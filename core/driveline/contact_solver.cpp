@@ -47,16 +47,16 @@ void ContactSolver::solve_together(const std::array<ContactConditions, kFlankPai
     if (c.load > 0) geometries_.set(k, c.radius_x, c.radius_y);
   }
   std::array<ContactStatus, kFlankPairs> status;
-  std::array<bool, kFlankPairs> is_handed_back;
+  std::array<bool, kFlankPairs> by_scalar_kernel;
   FlankContactBatchResults results = solved_.results();
   results.status = status.data();
-  results.by_scalar_kernel = is_handed_back.data();
+  results.by_scalar_kernel = by_scalar_kernel.data();
   batch_->solve(geometries_, 0, kFlankPairs,
                 {load.data(), pinion_x.data(), pinion_y.data(), gear_x.data(), gear_y.data()},
                 results);
   for (int k = 0; k < kFlankPairs; ++k) {
     if (!(load[k] > 0)) continue;
-    tally_.handed_back += is_handed_back[k] ? 1 : 0;
+    tally_.by_scalar_kernel += by_scalar_kernel[k] ? 1 : 0;
     out[k] = {};
     solved_.copy(k, out[k]);
     out[k].status = status[k];

@@ -11,8 +11,8 @@ namespace tribodyn {
 /// The contacts that a search or a march has solved.
 struct ContactTally {
   long solutions = 0;
-  long instants = 0;     ///< that a ContactSolver took, with and without loaded flanks
-  long handed_back = 0;  ///< of its solutions, those that the batch left to the scalar kernel
+  long instants = 0;          ///< states evaluated by a ContactSolver, loaded or not
+  long by_scalar_kernel = 0;  ///< solutions of which the batch was not certain
   ContactStatus refusal = ContactStatus::kOk;  ///< the first one since the last take_refusal()
   ContactStatus take_refusal() { return std::exchange(refusal, ContactStatus::kOk); }
 };

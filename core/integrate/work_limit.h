@@ -6,9 +6,9 @@
 namespace tribodyn {
 
 /// A limit on the work of marches, in contact solutions: results do not depend on the machine.
-/// Whatever else takes time counts as contact solutions, by its measured time: an evaluation of the
-/// equations of motion as one, or more where the mesh functions are summed order by order; a
-/// contact that the batch leaves to the scalar kernel as 20.
+/// Other work counts as so many contact solutions as take the same time (measured): an evaluation
+/// of the equations of motion as one, or more where the mesh functions are summed order by order; a
+/// contact solved by the scalar kernel as 20.
 class WorkLimit {
  public:
   /// Counts from here on. Keeps the reference to the tally.
@@ -18,10 +18,10 @@ class WorkLimit {
   /// Share of the limit that has been spent; may exceed 1 by some thousand contacts.
   double spent_share() const {
     constexpr double kMoreByScalarKernel = 19;
-    const double spent =
-        static_cast<double>(tally_.solutions - start_.solutions) +
-        per_instant_ * static_cast<double>(tally_.instants - start_.instants) +
-        kMoreByScalarKernel * static_cast<double>(tally_.handed_back - start_.handed_back);
+    const double spent = static_cast<double>(tally_.solutions - start_.solutions) +
+                         per_instant_ * static_cast<double>(tally_.instants - start_.instants) +
+                         kMoreByScalarKernel *
+                             static_cast<double>(tally_.by_scalar_kernel - start_.by_scalar_kernel);
     return spent / most_;
   }
   bool is_spent() const { return spent_share() >= 1; }

@@ -168,9 +168,9 @@ class GridRefinement {
 
  private:
   double step_error(const MeshGrid& grid) const {
-    // Flanks that tap each other lose energy in a small part of the mesh cycle, on few steps:
-    // errors of the loss are up to 2.2 times what two grids tell (reference axle, -0.02 to 0.02 N m
-    // at 200 and 300 rad/s).
+    // Flanks that tap each other lose energy in a small part of the mesh cycle, on few steps. The
+    // loss errs by up to 2.2 times the estimate from two grids (reference axle, pinion torques from
+    // -0.02 to 0.02 N m at 200 and 300 rad/s).
     constexpr double kTapping = 3;
     return (is_tapping_ ? kTapping : 1) * coarser_.error(grid, orbit_.figures);
   }

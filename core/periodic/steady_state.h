@@ -13,8 +13,8 @@ namespace tribodyn {
 struct SteadyStateOptions {
   int first_period = 1;  ///< tried first [mesh cycles]: that of the response of the start
   MarchOptions march;
-  int maximum_mesh_cycles = 4000;        ///< those of the last multiplier come on top
-  std::function<bool()> is_over;         ///< asked between periods: true ends the search
+  int maximum_mesh_cycles = 4000;        ///< without those that measure the multiplier
+  std::function<bool()> is_over;         ///< called between periods; true ends the search
   std::function<bool(double)> progress;  ///< false: throws Cancelled
 };
 

@@ -19,7 +19,8 @@ constexpr std::size_t kTorque = 1;
 constexpr std::array<int, 3> kFirstBoxes = {12, 2, 1};
 /// Over the error of linear interpolation: see loss_map.h.
 constexpr double kErrorFactor = 0.5;
-/// Points of a map over those of its first boxes, at least: 2 to 3 over the NEDC, UDDS and WLTC.
+/// A map takes at least so many times the points of its first boxes: 2 to 3 for the NEDC, UDDS and
+/// WLTC.
 constexpr double kPointsOverFirst = 2;
 /// Of the allowed error, for the boxes that are not divided at a time. Not critical: with 0.5 a
 /// WLTC takes 6 % more points.
@@ -28,14 +29,14 @@ constexpr double kLightShare = 0.5;  // of the tolerance, for losses under light
 /// Responses that may be missed before places near them count as missed too. Each takes as long as
 /// 30 others. A WLTC has 10 to 20.
 constexpr std::size_t kMostMissed = 50;
-constexpr std::size_t kPlacesAtOnce = 16;  // after which those that are missed are counted
+constexpr std::size_t kPlacesAtOnce = 16;  // between counts of the missed responses
 constexpr std::size_t kMostThorough = 4;   // places of a map; each may take 0.3 s
 
-/// What is known of the loss force at a place [N].
+/// The loss force at a place [N].
 struct MapSample {
   double force = 0;
   double solver_error = 0;
-  double doubt = 0;  // the error where the response was not found
+  double doubt = 0;  // error, if the response was not found
 };
 
 /// Sums over readings [J].

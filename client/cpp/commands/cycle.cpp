@@ -162,7 +162,8 @@ Command cycle_command() {
       "mesh loss over a drive cycle: energy, inefficiency, where it arises",
       "Computes the mesh loss of lubricants over a drive cycle as a sequence of steady points, "
       "each with the torque of speed, acceleration and slope. Solves the pieces themselves if few "
-      "are distinct, and otherwise an adaptive map whose error is stated. The NEDC is built in; others are CSV files with the columns time_seconds, "
+      "are distinct, and otherwise an adaptive map whose error is stated. The NEDC is built in; "
+      "others are CSV files with the columns time_seconds, "
       "speed_kilometres_per_hour and, optionally, ascent_angle_degrees and "
       "sump_temperature_celsius. Nothing is stored.",
       {"tribodyn cycle paper-fluid-1 paper-fluid-2 --plot cycle.svg",
