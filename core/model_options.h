@@ -31,7 +31,7 @@ enum class HertzLoad {
   kTotalLoad,  ///< ellipse from W
 };
 
-/// What the model includes. Defaults are the paper's model as corrected.
+/// What the model includes. Defaults are the paper's model as corrected: the preset "paper".
 struct ModelOptions {
   bool isothermal = false;                ///< T_c = T_in: no thermal network (eqs 37, 38 and 39)
   bool newtonian = false;                 ///< F = 1 in eq 23: no shear thinning
@@ -46,6 +46,10 @@ struct ModelOptions {
   /// The film of eq 12 times phi_T of P. K. Gupta and others (1992), with the pressure that the
   /// contact would have if the film carried all of its load.
   bool inlet_shear_heating = false;
+  /// A film carries at most laws::supported_share() of what eq 41 leaves to it. Asperities carry
+  /// the rest, so that friction tends to the boundary value where the film vanishes. Without effect
+  /// on smooth surfaces and together with as_published.eq43_44_polynomials.
+  bool closed_load_sharing = false;
   PressureViscosityIndex pressure_viscosity_index = PressureViscosityIndex::kReciprocalAsymptotic;
   HertzSolution hertz_solution = HertzSolution::kSimplified;
   HertzLoad hertz_load = HertzLoad::kFilmLoad;
@@ -53,5 +57,14 @@ struct ModelOptions {
 
   bool operator==(const ModelOptions&) const = default;
 };
+
+/// The preset "recommended": the paper's model with the inlet heating that the paper asks for and
+/// load sharing that holds for thin films too.
+inline ModelOptions recommended_model() {
+  ModelOptions out;
+  out.inlet_shear_heating = true;
+  out.closed_load_sharing = true;
+  return out;
+}
 
 }  // namespace tribodyn

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "google/api/field_behavior.pb.h"
+#include "tribodyn/v1/limits.pb.h"
 
 namespace tribodyn {
 
@@ -19,8 +20,12 @@ bool is_output_only(const google::protobuf::FieldDescriptor& field) {
   return has(field, google::api::OUTPUT_ONLY);
 }
 
-bool is_documentary(const google::protobuf::FieldDescriptor& field) {
+bool may_be_unset(const google::protobuf::FieldDescriptor& field) {
   return has(field, google::api::OPTIONAL);
+}
+
+bool is_documentary(const google::protobuf::FieldDescriptor& field) {
+  return field.options().GetExtension(v1::documentary);
 }
 
 }  // namespace tribodyn

@@ -90,6 +90,10 @@ void solve_with(const Tables& tables, int count, const ContactBlockInputs& in,
   }
   share_loads<kDigits>(tables, active, work);
   for (const int i : active) finish_load_sharing<kDigits>(tables, in, block, work, i);
+  if (tables.closed_load_sharing) {
+    for (const int i : active) close_load_sharing<kDigits>(tables, in, block, work, i);
+  }
+  for (const int i : active) rub_asperities(tables, block, work, i);
   for (const int i : active) eval_thermal_network(tables, in, block, work, i);
   for (const int i : active) {
     prepare_shear<Growth, kDigits>(tables, load(block.sliding_speed + i),

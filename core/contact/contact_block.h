@@ -34,7 +34,7 @@ struct ContactBlockInputs {
 
 struct alignas(64) ContactBlockResults {
   ContactLanes friction, viscous_friction, boundary_friction, contact_temperature, film_thickness,
-      film_ratio, maximum_pressure, film_load, asperity_load, sliding_speed, shear_rate,
+      film_ratio, maximum_pressure, ellipse_load, asperity_load, sliding_speed, shear_rate,
       mean_shear_stress, limited_area_share;
   ContactLanes limited_at_centre;  ///< 1 or 0
   ContactLanes certified;          ///< 1, or 0: the scalar kernel must solve it

@@ -141,6 +141,49 @@ bool tabulate_ratio(InstructionSet instruction_set, double least_factor, double 
   return false;
 }
 
+namespace {
+
+/// Coefficients of powers, from the highest down, of the polynomial through values at Chebyshev
+/// points.
+template <int kTerms, int kPoints>
+std::array<double, kTerms> powers(const std::array<double, kPoints>& values) {
+  const auto& rule = chebyshev<kPoints>();
+  std::array<double, kTerms> out{};
+  for (int m = 0; m < kTerms; ++m) {
+    const auto& weight = rule.to_coefficients[m];
+    const double coefficient =
+        std::inner_product(values.begin(), values.end(), weight.begin(), 0.0);
+    for (int j = m; j >= 0; j -= 2) out[kTerms - 1 - j] += coefficient * rule.in_powers[m][j];
+  }
+  return out;
+}
+
+void tabulate_deep_asperities(ContactBlockTables& tables) {
+  struct Fit {
+    double scale, offset;
+    std::array<double, kDeepTerms> area;
+  };
+  static const Fit fit = [] {
+    constexpr int kPoints = 64;
+    constexpr double kShallowest = 1.2;  // a film of this ratio supports all of its load
+    const double least = std::log(asperity_functions(kShallowest).f5_2);
+    const double most = std::log(asperity_functions(kDeepestSeparation).f5_2);
+    std::array<double, kPoints> log_f2;
+    for (int i = 0; i < kPoints; ++i) {
+      const double log_f5_2 = least + (most - least) * 0.5 * (1 + chebyshev<kPoints>().point[i]);
+      log_f2[i] =
+          std::log(asperity_functions(separation_under_load(std::exp(log_f5_2), kShallowest)).f2);
+    }
+    return Fit{2 / (most - least), -(most + least) / (most - least),
+               powers<kDeepTerms, kPoints>(log_f2)};
+  }();
+  tables.deep_scale = fit.scale;
+  tables.deep_offset = fit.offset;
+  tables.deep_area = fit.area;
+}
+
+}  // namespace
+
 void tabulate_asperities(ContactBlockTables& tables) {
   struct Fits {
     double scale, offset;
@@ -159,29 +202,18 @@ void tabulate_asperities(ContactBlockTables& tables) {
       f2[i] = scale * f.f2;
       f5_2[i] = scale * f.f5_2 / std::sqrt(v);
     }
-    const auto powers = [&](const std::array<double, kPoints>& values) {
-      std::array<double, kAsperityTerms> out{};
-      for (int m = 0; m < kAsperityTerms; ++m) {
-        const auto& weight = rule.to_coefficients[m];
-        const double coefficient =
-            std::inner_product(values.begin(), values.end(), weight.begin(), 0.0);
-        for (int j = m; j >= 0; j -= 2) {
-          out[kAsperityTerms - 1 - j] += coefficient * rule.in_powers[m][j];
-        }
-      }
-      return out;
-    };
     Fits out;
     out.scale = 2 / (most - least);
     out.offset = -(most + least) / (most - least);
-    out.f2 = powers(f2);
-    out.f5_2 = powers(f5_2);
+    out.f2 = powers<kAsperityTerms, kPoints>(f2);
+    out.f5_2 = powers<kAsperityTerms, kPoints>(f5_2);
     return out;
   }();
   tables.asperity_scale = fits.scale;
   tables.asperity_offset = fits.offset;
   tables.f2 = fits.f2;
   tables.f5_2 = fits.f5_2;
+  if (tables.closed_load_sharing) tabulate_deep_asperities(tables);
 }
 
 }  // namespace tribodyn

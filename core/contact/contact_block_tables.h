@@ -23,6 +23,11 @@ inline constexpr double kAsperityShift = 3.5;
 inline constexpr double kAsperityEnd = 36.5;
 inline constexpr double kAsperitiesVanish = 38.75;
 
+/// ln F_2 as a polynomial of ln F_5/2, for separations from kDeepestSeparation to those at which a
+/// film supports all of its load: the area of asperities that carry what a thin film does not.
+inline constexpr int kDeepTerms = 32;
+inline constexpr double kDeepestSeparation = -8;
+
 /// Where the thermal iteration starts: ln(1/r - 1), r = tau_bar/tau_bar(all on tau_L), as a cubic
 /// in Chebyshev polynomials of ln shear rate, ln(1 + c p_max) and ln(gain tau_bar(all on tau_L)),
 /// each scaled to [-1, 1]. Fitted to 64 solutions; within some 10 % in gears, which saves half of
@@ -48,6 +53,7 @@ struct ContactBlockTables : ContactConstants<double> {
   /// False: the scalar kernel solves all contacts.
   bool can_certify = false;
   bool inlet_shear_heating = false;
+  bool closed_load_sharing = false;
   bool isothermal = false, limited = false;
 
   double log_limit_at_edge = 0;        ///< ln tau_L0, which may be -infinity
@@ -70,6 +76,8 @@ struct ContactBlockTables : ContactConstants<double> {
 
   double asperity_scale = 0, asperity_offset = 0;
   std::array<double, kAsperityTerms> f2{}, f5_2{};  ///< from the highest power down
+  double deep_scale = 0, deep_offset = 0;           ///< x = deep_scale ln F_5/2 + deep_offset
+  std::array<double, kDeepTerms> deep_area{};       ///< from the highest power down
 };
 
 /// Fills the polynomials of R for L in [least_factor, greatest_factor]. Takes as much depth as 24
@@ -77,7 +85,7 @@ struct ContactBlockTables : ContactConstants<double> {
 bool tabulate_ratio(InstructionSet instruction_set, double least_factor, double greatest_factor,
                     ContactBlockTables& tables);
 
-/// Fills the polynomials of F_2 and F_5/2.
+/// Fills the polynomials of F_2 and F_5/2 and of one as a function of the other.
 void tabulate_asperities(ContactBlockTables& tables);
 
 }  // namespace tribodyn

@@ -159,33 +159,43 @@ LoadedContact<Real> loaded_contact(const ContactParametersOf<Real>& in,
                                                   axes.maximum_pressure, constants.reduced_modulus);
   }
   out.sharing = {
-      k.load, out.film_thickness / in.roughness.composite_rms_height,
+      k.load,
+      out.film_thickness / in.roughness.composite_rms_height,
       constants.asperity_load_factor * std::numbers::pi * axes.semi_major * axes.semi_minor,
-      options.hertz_load == HertzLoad::kTotalLoad, options.as_published.eq43_44_polynomials};
+      options.hertz_load == HertzLoad::kTotalLoad,
+      options.as_published.eq43_44_polynomials,
+      options.closed_load_sharing && !options.as_published.eq43_44_polynomials &&
+          constants.asperity_load_factor > 0};
   return out;
 }
 
 /// The contact as film and asperities share its load.
 template <class Real>
 struct SharedContact {
-  Real film_load;  ///< W_EHL [N]
+  Real ellipse_load;  ///< W_EHL of eq 41, which ellipse and film follow from [N]
+  Real film_load;     ///< W_EHL: the same, unless load sharing is closed [N]
   EllipseAxesOf<Real> axes;
-  Real contact_area;    ///< A_EHL [m2]
-  Real film_thickness;  ///< h_cen [m]
-  Real film_ratio;      ///< lambda_s [-]
-  Real asperity_load;   ///< W_asp [N]
-  Real asperity_area;   ///< A_asp [m2]
+  Real contact_area;     ///< A_EHL [m2]
+  Real film_thickness;   ///< h_cen [m]
+  Real film_ratio;       ///< lambda_s [-]
+  Real supported_share;  ///< film_load/ellipse_load [-]
+  Real asperity_load;    ///< W_asp [N]
+  Real asperity_area;    ///< A_asp [m2]
 };
 
-/// log_share is ln(W_EHL/W).
+/// log_share is ln(W_EHL/W) of eq 41. Where a film supports less than that, asperities carry the
+/// rest (K. L. Johnson, J. A. Greenwood and S. Y. Poon, Wear 19, 1972, 91): the mean planes
+/// approach, and may pass each other, until eq 41 gives that load.
 template <class Real>
 SharedContact<Real> shared_contact(const ContactParametersOf<Real>& in,
                                    const ContactConstants<Real>& constants,
                                    const LoadedContact<Real>& loaded, const Real& log_share) {
   SharedContact<Real> out;
-  out.film_load = loaded.sharing.load * laws::exponential(log_share);
-  out.axes = ellipse_axes(
-      loaded.unit, loaded.sharing.ellipse_from_total_load ? loaded.sharing.load : out.film_load);
+  const Real& load = loaded.sharing.load;
+  out.ellipse_load = load * laws::exponential(log_share);
+  out.film_load = out.ellipse_load;
+  out.axes =
+      ellipse_axes(loaded.unit, loaded.sharing.ellipse_from_total_load ? load : out.ellipse_load);
   out.contact_area = std::numbers::pi * out.axes.semi_major * out.axes.semi_minor;
   out.film_thickness = loaded.film_thickness * laws::film_thinning(log_share);
   out.film_ratio = out.film_thickness / in.roughness.composite_rms_height;
@@ -193,6 +203,17 @@ SharedContact<Real> shared_contact(const ContactParametersOf<Real>& in,
       asperity_functions(out.film_ratio, loaded.sharing.as_published_polynomials);
   out.asperity_load = constants.asperity_load_factor * out.contact_area * functions.f5_2;
   out.asperity_area = constants.asperity_area_factor * out.contact_area * functions.f2;
+  out.supported_share = loaded.sharing.closed ? laws::supported_share(out.film_ratio) : Real(1.0);
+  if (out.supported_share < 1) {
+    out.film_load = out.supported_share * out.ellipse_load;
+    out.asperity_load = load - out.film_load;
+    const Real separation = separation_under_load(
+        Real(out.asperity_load / (constants.asperity_load_factor * out.contact_area)),
+        laws::value_of(out.film_ratio));
+    out.asperity_area = laws::least(
+        Real(constants.asperity_area_factor * out.contact_area * asperity_functions(separation).f2),
+        out.contact_area);
+  }
   return out;
 }
 
@@ -233,7 +254,8 @@ HeatedContact<Real> heated_contact(const ContactParametersOf<Real>& in,
           : laws::boundary_friction(in.boundary.tribofilm_shear_strength, contact.asperity_area,
                                     in.boundary.asperity_friction_coefficient,
                                     contact.asperity_load);
-  out.viscous_area = laws::viscous_area(contact.contact_area, contact.asperity_area);
+  out.viscous_area =
+      contact.supported_share * laws::viscous_area(contact.contact_area, contact.asperity_area);
 
   const bool major_along_y = k.radius_y >= k.radius_x;
   const Real per_minor = 1 / contact.axes.semi_minor, per_major = 1 / contact.axes.semi_major;

@@ -122,6 +122,11 @@ ContactSensitivityModel::ContactSensitivityModel(const FlankContactModel& model)
   };
   ContactConstants<DualNumber> constants = contact_constants(parameters, options, index_of);
 
+  parameters.boundary.asperity_friction_coefficient =
+      parameters.boundary.asperity_friction_coefficient +
+      values.boundary.coefficient_slope *
+          (constants.inlet_temperature - constants.inlet_temperature.value);
+
   auto kept = std::make_unique<Constants>();
   const auto contact = contact_level(parameters, constants);
   const auto contact_variables = contact_level(kept->parameters, kept->constants);
@@ -178,12 +183,12 @@ ContactSensitivity ContactSensitivityModel::at(const ContactConditions& conditio
     out.status = SensitivityStatus::kNotSolved;
     return out;
   }
-  out = at(conditions, solution.film_load, solution.contact_temperature);
+  out = at(conditions, solution.ellipse_load, solution.contact_temperature);
   out.several_equilibria = solution.thermal_roots > 1;
   return out;
 }
 
-ContactSensitivity ContactSensitivityModel::at(const ContactConditions& k, double film_load,
+ContactSensitivity ContactSensitivityModel::at(const ContactConditions& k, double ellipse_load,
                                                double contact_temperature) const {
   ContactSensitivity out;
   if (!(k.load > 0)) return out;
@@ -213,7 +218,7 @@ ContactSensitivity ContactSensitivityModel::at(const ContactConditions& k, doubl
   const LoadedContact<ContactNumber> loaded =
       loaded_contact(c.parameters, c.constants, options, conditions);
   const ContactNumber log_share = laws::root_with_slopes<kContactDirections>(
-      std::log(film_load / k.load),
+      std::log(ellipse_load / k.load),
       [&](const ContactNumber& r) { return carried_share(loaded.sharing, r) - 1; });
   const SharedContact<ContactNumber> shared =
       shared_contact(c.parameters, c.constants, loaded, log_share);
@@ -263,7 +268,7 @@ ContactSensitivity ContactSensitivityModel::at(const ContactConditions& k, doubl
   take(friction * c.by_inputs(heated.sliding_speed), out.heat_rate);
   take(c.by_inputs(shared.film_thickness), out.film_thickness);
   take(c.by_inputs(shared.film_ratio), out.film_ratio);
-  take(c.by_inputs(laws::exponential(log_share)), out.film_load_share);
+  take(c.by_inputs(shared.film_load / conditions.load), out.film_load_share);
   take(pressure, out.maximum_pressure);
   take(temperature, out.contact_temperature);
   take(mean_stress, out.mean_shear_stress);

@@ -173,9 +173,9 @@ class ContactSensitivityModel {
   ContactSensitivity at(const ContactConditions& conditions) const;
 
   /// Differentiates a contact that has been solved, by FlankContactModel or FlankContactBatch, with
-  /// the film load [N] and contact temperature [K] found. An error of either enters the derivatives
-  /// in the first order.
-  ContactSensitivity at(const ContactConditions& conditions, double film_load,
+  /// the load of the ellipse [N] and contact temperature [K] found. An error of either enters the
+  /// derivatives in the first order.
+  ContactSensitivity at(const ContactConditions& conditions, double ellipse_load,
                         double contact_temperature) const;
 
   /// Derivatives of each ContactLevel by the parameters of the model: what takes those of

@@ -23,7 +23,7 @@ enum SolvedContactRow {
   kSolvedPerSemiX,
   kSolvedPerSemiY,
   kSolvedUnitPressure,
-  kSolvedFilmLoad,            ///< W_EHL [N]
+  kSolvedEllipseLoad,         ///< W_EHL [N]
   kSolvedContactTemperature,  ///< T_c [K]
   kSolvedMeanShearStress,     ///< tau_bar [Pa]
   kSolvedLimitedAreaShare,    ///< [-]

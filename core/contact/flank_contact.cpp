@@ -25,6 +25,7 @@ bool all_finite(std::initializer_list<double> values) {
 bool representable(const ContactSolution& s) {
   return !std::isnan(s.shear_rate + s.thermal_resistance_1 + s.thermal_resistance_2) &&
          all_finite({s.film_load,
+                     s.ellipse_load,
                      s.asperity_load,
                      s.contact_area,
                      s.asperity_area,
@@ -149,9 +150,10 @@ ContactStatus FlankContactModel::share_load(const ContactConditions& k,
   const SharedLoad share = solve_load_sharing(loaded.sharing);
   if (!share.found) return ContactStatus::kRefusedNoLoadSharing;
   shared = shared_contact(parameters_, constants_, loaded, share.log_share);
-  if (!std::isnormal(shared.film_load)) return ContactStatus::kRefusedOverflow;
+  if (!std::isnormal(shared.ellipse_load)) return ContactStatus::kRefusedOverflow;
 
   out.film_load = shared.film_load;
+  out.ellipse_load = shared.ellipse_load;
   out.semi_major_axis = shared.axes.semi_major;
   out.semi_minor_axis = shared.axes.semi_minor;
   out.maximum_pressure = shared.axes.maximum_pressure;
@@ -245,6 +247,14 @@ double FlankContactModel::flash_temperature_rise(const ContactConditions& k, dou
       mean_shear_stress * laws::oil_rise_per_stress(sliding_speed(k), film_thickness,
                                                     parameters_.lubricant.thermal_conductivity);
   return std::max(0.0, contact_temperature - constants_.inlet_temperature - oil_rise);
+}
+
+double FlankContactModel::inlet_heating_factor(double entrainment_squared, double sliding_squared,
+                                               double maximum_pressure) const {
+  if (!(entrainment_squared > 0)) return 1;
+  return laws::inlet_heating_factor(constants_.log_thermal_loading, std::log(entrainment_squared),
+                                    std::log(sliding_squared), maximum_pressure,
+                                    constants_.reduced_modulus);
 }
 
 double FlankContactModel::log_stress_over_limit(const ContactFigures& figures) const {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "core/contact/contact_equations.h"
 #include "core/contact/specific_sliding.h"
 #include "core/model_options.h"
@@ -58,6 +60,7 @@ struct ContactFigures {
 /// Everything about one contact.
 struct ContactSolution : ContactFigures {
   double film_load = 0;                             ///< W_EHL [N]
+  double ellipse_load = 0;                          ///< see SharedContact [N]
   double contact_area = 0;                          ///< A_EHL = pi a_c b_c [m2]
   double asperity_area = 0;                         ///< A_asp, eq 42 [m2]
   double semi_major_axis = 0;                       ///< a_c, eq 20 [m]
@@ -117,7 +120,13 @@ class FlankContactModel {
   /// positive where the centre is on tau_L; infinite without sliding or without a film.
   double log_stress_over_limit(const ContactFigures& figures) const;
 
+  /// phi_T, to what shear heating of the inlet thins the film [-], whether the options include it
+  /// or not. Squares of the entrainment and sliding speeds [m2/s2], greatest pressure [Pa].
+  double inlet_heating_factor(double entrainment_squared, double sliding_squared,
+                              double maximum_pressure) const;
+
   double inlet_temperature() const { return constants_.inlet_temperature; }
+  double inlet_viscosity() const { return std::exp(constants_.log_inlet_viscosity); }  ///< [Pa s]
   double pressure_viscosity_index() const { return constants_.shear.index; }
   double reduced_modulus() const { return constants_.reduced_modulus; }  ///< E', eq 13 [Pa]
   const ModelOptions& options() const { return options_; }

@@ -125,6 +125,7 @@ FlankContactBatch::FlankContactBatch(const FlankContactModel& model, Instruction
   const ModelOptions& options = model.options();
   static_cast<ContactConstants<double>&>(t) = model.constants();
   t.inlet_shear_heating = options.inlet_shear_heating;
+  t.closed_load_sharing = options.closed_load_sharing && t.asperity_load_factor > 0;
   t.inverse_roughness = 1 / in.roughness.composite_rms_height;
   t.no_boundary_friction = options.no_boundary_friction;
   if (!options.no_boundary_friction) t.boundary = in.boundary;
@@ -211,7 +212,7 @@ constexpr Figure kFigures[] = {
     {&To::central_film_thickness, &Solution::central_film_thickness, &Block::film_thickness},
     {&To::film_ratio, &Solution::film_ratio, &Block::film_ratio},
     {&To::maximum_pressure, &Solution::maximum_pressure, &Block::maximum_pressure},
-    {&To::film_load, &Solution::film_load, &Block::film_load},
+    {&To::ellipse_load, &Solution::ellipse_load, &Block::ellipse_load},
     {&To::asperity_load, &Solution::asperity_load, &Block::asperity_load},
     {&To::sliding_speed, &Solution::sliding_speed, &Block::sliding_speed},
     {&To::shear_rate, &Solution::shear_rate, &Block::shear_rate},
@@ -381,7 +382,7 @@ int DifferentiatedContacts::add(const ContactGeometries& geometries, std::size_t
   put(kSolvedPerSemiX, geometries.per_semi_x_[i]);
   put(kSolvedPerSemiY, geometries.per_semi_y_[i]);
   put(kSolvedUnitPressure, geometries.maximum_pressure_[i]);
-  put(kSolvedFilmLoad, solved.film_load);
+  put(kSolvedEllipseLoad, solved.ellipse_load);
   put(kSolvedContactTemperature, solved.contact_temperature);
   put(kSolvedMeanShearStress, solved.mean_shear_stress);
   put(kSolvedLimitedAreaShare, solved.limiting_stress_area_share);

@@ -69,7 +69,7 @@ struct FlankContactBatchResults {
   double* central_film_thickness = nullptr;      ///< h_cen [m]
   double* film_ratio = nullptr;                  ///< lambda_s [-]
   double* maximum_pressure = nullptr;            ///< p_max [Pa]
-  double* film_load = nullptr;                   ///< W_EHL [N]
+  double* ellipse_load = nullptr;                ///< W_EHL of eq 41 [N]
   double* asperity_load = nullptr;               ///< W_asp [N]
   double* sliding_speed = nullptr;               ///< V_s [m/s]
   double* shear_rate = nullptr;                  ///< gamma_dot [1/s]
@@ -89,7 +89,7 @@ class DifferentiatedContacts {
 
   /// What a solution has found of a contact, as in FlankContactBatchResults.
   struct Solved {
-    double film_load, contact_temperature, mean_shear_stress, limiting_stress_area_share;
+    double ellipse_load, contact_temperature, mean_shear_stress, limiting_stress_area_share;
   };
   /// Adds a contact with the geometry of number i of `geometries`. Both surfaces must move. Returns
   /// the contact's place in the rows of slopes().

@@ -14,6 +14,7 @@ struct LoadSharingOf {
   Real asperity_load_per_f5_2;    ///< W_asp / F_5/2 if W_EHL were W [N]
   bool ellipse_from_total_load;   ///< A does not follow W_EHL
   bool as_published_polynomials;  ///< eq 43 as printed
+  bool closed = false;            ///< ModelOptions::closed_load_sharing, where it has an effect
 };
 using LoadSharing = LoadSharingOf<double>;
 

@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include <array>
+#include <cstddef>
 
 #include "core/contact/block_work-inl.h"
 #include "core/laws/asperities-inl.h"
@@ -91,11 +92,12 @@ HWY_INLINE WithSlope<Pack> polynomial_and_slope(const std::array<double, kAsperi
   return {fused(odd, x, even), fused(x + x, fused(odd_slope, x, even_slope), odd)};
 }
 
-HWY_INLINE Pack polynomial(const std::array<double, kAsperityTerms>& c, Pack x) {
-  static_assert(kAsperityTerms % 2 == 0);
+template <std::size_t kTerms>
+HWY_INLINE Pack polynomial(const std::array<double, kTerms>& c, Pack x) {
+  static_assert(kTerms % 2 == 0);
   const Pack x2 = x * x;
   Pack even = c[1], odd = c[0];
-  for (int j = 2; j < kAsperityTerms; j += 2) {
+  for (std::size_t j = 2; j < kTerms; j += 2) {
     odd = fused(odd, x2, c[j]);
     even = fused(even, x2, c[j + 1]);
   }
@@ -159,7 +161,7 @@ HWY_NOINLINE void share_loads(const Tables& t, ActiveLanes active, Work& work) {
   }
 }
 
-/// The contact as it shares its load: film, ellipse and asperities.
+/// The contact as it shares its load by eq 41: film, ellipse and asperities.
 template <Digits kDigits>
 HWY_INLINE void finish_load_sharing(const Tables& t, const ContactBlockInputs& in,
                                     ContactBlockResults& block, Work& work, int i) {
@@ -193,15 +195,41 @@ HWY_INLINE void finish_load_sharing(const Tables& t, const ContactBlockInputs& i
   const Pack asperity_area = where(~alone, t.asperity_area_factor * contact_area * f2);
   store(load_root, work.load_root + i);
   store(contact_area, work.contact_area + i);
+  store(asperity_area, work.asperity_area + i);
   store(viscous_area(contact_area, asperity_area), work.viscous_area + i);
-  store(boundary_friction(t.boundary.tribofilm_shear_strength, asperity_area,
-                          t.boundary.asperity_friction_coefficient, asperity_load),
-        block.boundary_friction + i);
-  store(square(third) * third * load_any(in.load + i), block.film_load + i);
+  store(square(third) * third * load_any(in.load + i), block.ellipse_load + i);
   store(asperity_load, block.asperity_load + i);
   store(film, block.film_thickness + i);
   store(film * t.inverse_roughness, block.film_ratio + i);
   store(load_any(in.unit_pressure + i) * load_root, block.maximum_pressure + i);
+}
+
+/// Where films are too thin to support their load, asperities carry the rest (see shared_contact).
+template <Digits kDigits>
+HWY_INLINE void close_load_sharing(const Tables& t, const ContactBlockInputs& in,
+                                   ContactBlockResults& block, Work& work, int i) {
+  const Pack supported = supported_share(load(block.film_ratio + i));
+  const Mask closes = supported < 1;
+  if (!any(closes)) return;
+  const Pack contact_area = load(work.contact_area + i);
+  const Pack rest = less_product(supported, load(block.ellipse_load + i), load_any(in.load + i));
+  const Pack log_f5_2 = logarithm<kDigits>(rest / (t.asperity_load_factor * contact_area));
+  const Pack x = fused(log_f5_2, t.deep_scale, t.deep_offset);
+  const Pack f2 = exponential<kDigits>(polynomial(t.deep_area, clamped(x, -1, 1)));
+  const Pack area = least(t.asperity_area_factor * contact_area * f2, contact_area);
+  const auto replace = [&](Pack value, double* to)
+                           HWY_ATTR { store(select(closes, value, load(to)), to); };
+  replace(rest, block.asperity_load + i);
+  replace(area, work.asperity_area + i);
+  replace(supported * viscous_area(contact_area, area), work.viscous_area + i);
+  store(as_number((load(work.in_range + i) > 0) & (~closes | (x <= 1))), work.in_range + i);
+}
+
+HWY_INLINE void rub_asperities(const Tables& t, ContactBlockResults& block, const Work& work,
+                               int i) {
+  store(boundary_friction(t.boundary.tribofilm_shear_strength, load(work.asperity_area + i),
+                          t.boundary.asperity_friction_coefficient, load(block.asperity_load + i)),
+        block.boundary_friction + i);
 }
 
 }  // namespace

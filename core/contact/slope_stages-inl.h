@@ -140,10 +140,10 @@ HWY_NOINLINE void eval_conditions(const ContactBlockTables& t, const Columns& so
 struct PolynomialAndSlope {
   Pack value, slope;
 };
-HWY_INLINE PolynomialAndSlope asperity_polynomial(const std::array<double, kAsperityTerms>& c,
-                                                  Pack x) {
+template <std::size_t kTerms>
+HWY_INLINE PolynomialAndSlope asperity_polynomial(const std::array<double, kTerms>& c, Pack x) {
   PolynomialAndSlope out{c[0], 0};
-  for (int j = 1; j < kAsperityTerms; ++j) {
+  for (std::size_t j = 1; j < kTerms; ++j) {
     out.slope = fused(out.slope, x, out.value);
     out.value = fused(out.value, x, c[j]);
   }
@@ -182,7 +182,7 @@ HWY_NOINLINE void eval_shared_contact(const ContactBlockTables& t, const Columns
 
   const SharingNumber log_load = logarithm(load);
   const SharingNumber ratio_all = film_under_all / rms_height;
-  const Pack log_share = logarithm(row(kSolvedFilmLoad) / load_all);
+  const Pack log_share = logarithm(row(kSolvedEllipseLoad) / load_all);
   const Mask some = ratio_all.value < kAsperitiesVanish;  // asperities touch
   const Pack ratio = ratio_all.value * film_thinning(log_share),
              inside = least(ratio, kAsperityEnd);
@@ -201,20 +201,38 @@ HWY_NOINLINE void eval_shared_contact(const ContactBlockTables& t, const Columns
   const SharingNumber film = film_under_all * film_thinning(share), film_ratio = film / rms_height;
   const SharingNumber load_root = exponential((1.0 / 3) * (log_load + share));
   const SharingNumber contact_area = unit_area * square(load_root);
-  const SharedNumber asperity_area =
-      SharedNumber::variable(t.asperity_area_factor, kSharedAreaFactor) *
+  const SharedNumber area_factor =
+      SharedNumber::variable(t.asperity_area_factor, kSharedAreaFactor);
+  SharedNumber asperity_area =
+      area_factor *
       widened(contact_area * asperity_function(t, t.f2, 2, gaussian, v, cube, some, film_ratio));
+  SharingNumber asperity_load = load_factor * contact_area * f5_2(film_ratio);
   stages.film_ratio = widened(film_ratio);
-  stages.asperity_share = asperity_area.value / contact_area.value;
   const SharedNumber wide_area = widened(contact_area), wide_film = widened(film);
   stages.viscous_area = viscous_area(wide_area, asperity_area);
+  if (t.closed_load_sharing) {
+    const SharingNumber supported = supported_share(film_ratio);
+    const Mask closes = supported.value < 1;
+    const SharingNumber rest = load - supported * load * exponential(share);
+    const SharingNumber log_f5_2 = logarithm(rest / (load_factor * contact_area));
+    const PolynomialAndSlope log_f2 = asperity_polynomial(
+        t.deep_area, clamped(fused(log_f5_2.value, t.deep_scale, t.deep_offset), -1, 1));
+    const Pack f2 = exponential(log_f2.value);
+    const SharingNumber deep = chained(f2, f2 * log_f2.slope * t.deep_scale, log_f5_2);
+    const SharedNumber area = least(area_factor * widened(contact_area * deep), wide_area);
+    asperity_load = select(closes, rest, asperity_load);
+    asperity_area = select(closes, area, asperity_area);
+    stages.viscous_area =
+        select(closes, widened(supported) * viscous_area(wide_area, area), stages.viscous_area);
+  }
+  stages.asperity_share = asperity_area.value / contact_area.value;
   stages.boundary_friction = SharedNumber(0.0);
   if (!t.no_boundary_friction) {
     stages.boundary_friction = boundary_friction(
         SharedNumber::variable(t.boundary.tribofilm_shear_strength, kSharedTribofilm),
         asperity_area,
         SharedNumber::variable(t.boundary.asperity_friction_coefficient, kSharedAsperityFriction),
-        widened(load_factor * contact_area * f5_2(film_ratio)));
+        widened(asperity_load));
   }
   stages.pressure = widened(unit(row(kSolvedUnitPressure), 2.0 / 3) * load_root);
 

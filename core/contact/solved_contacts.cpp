@@ -23,30 +23,32 @@ constexpr SolvedRow kSolvedRows[] = {
     {&FlankContactBatchResults::limiting_stress_area_share,
      &ContactFigures::limiting_stress_area_share},
     {&FlankContactBatchResults::asperity_load, &ContactFigures::asperity_load}};
-constexpr std::size_t kFilmLoadRow = std::size(kSolvedRows);  // which ContactFigures lack
+constexpr std::size_t kEllipseLoadRow = std::size(kSolvedRows);  // which ContactFigures lack
 
 }  // namespace
 
 void SolvedContacts::resize(std::size_t count) {
-  if (count <= size_) return;
-  rows_.resize(kFilmLoadRow + 1, count);
+  size_ = count;
+  if (count <= room_) return;
+  rows_.resize(kEllipseLoadRow + 1, count);
   limiting_stress_at_centre_ = std::make_unique<bool[]>(count);
   by_scalar_kernel_ = std::make_unique<bool[]>(count);
-  size_ = count;
+  room_ = count;
 }
 
 void SolvedContacts::resize_for_overwrite(std::size_t count) {
-  if (count <= size_) return;
-  rows_.resize_for_overwrite(kFilmLoadRow + 1, count);
+  size_ = count;
+  if (count <= room_) return;
+  rows_.resize_for_overwrite(kEllipseLoadRow + 1, count);
   limiting_stress_at_centre_ = std::make_unique_for_overwrite<bool[]>(count);
   by_scalar_kernel_ = std::make_unique_for_overwrite<bool[]>(count);
-  size_ = count;
+  room_ = count;
 }
 
 FlankContactBatchResults SolvedContacts::results() {
   FlankContactBatchResults out;
   for (std::size_t r = 0; r < std::size(kSolvedRows); ++r) out.*kSolvedRows[r].array = rows_[r];
-  out.film_load = rows_[kFilmLoadRow];
+  out.ellipse_load = rows_[kEllipseLoadRow];
   out.limiting_stress_at_centre = limiting_stress_at_centre_.get();
   out.by_scalar_kernel = by_scalar_kernel_.get();
   return out;
@@ -58,7 +60,7 @@ const double* SolvedContacts::column(double ContactFigures::*figure) const {
   return rows_[row];
 }
 
-double SolvedContacts::film_load(std::size_t i) const { return rows_[kFilmLoadRow][i]; }
+double SolvedContacts::ellipse_load(std::size_t i) const { return rows_[kEllipseLoadRow][i]; }
 
 void SolvedContacts::copy(std::size_t i, ContactFigures& to) const {
   to.status = ContactStatus::kOk;

@@ -24,14 +24,15 @@ class SolvedContacts {
   const double* column(double ContactFigures::*figure) const;
   /// Sets the figures that are kept; those that FlankContactModel::complete() fills in are left.
   void copy(std::size_t i, ContactFigures& to) const;
-  double film_load(std::size_t i) const;  ///< W_EHL [N]
+  double ellipse_load(std::size_t i) const;  ///< W_EHL of eq 41 [N]
+  std::size_t size() const { return size_; }
   /// Returns true if FlankContactModel solved the contact, and not the vector code.
   bool by_scalar_kernel(std::size_t i) const { return by_scalar_kernel_[i]; }
 
  private:
   Columns rows_;
   std::unique_ptr<bool[]> limiting_stress_at_centre_, by_scalar_kernel_;
-  std::size_t size_ = 0;
+  std::size_t size_ = 0, room_ = 0;
 };
 
 }  // namespace tribodyn

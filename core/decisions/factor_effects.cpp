@@ -19,8 +19,13 @@ struct EffectColumns {
 void add_number_column(std::size_t factor, const std::vector<double>& numbers, EffectColumns& out) {
   const auto low = std::min_element(numbers.begin(), numbers.end());
   const auto high = std::max_element(numbers.begin(), numbers.end());
-  out.labels.push_back({factor, static_cast<std::size_t>(low - numbers.begin()),
-                        static_cast<std::size_t>(high - numbers.begin()), 0, 0, 0});
+  out.labels.push_back({factor,
+                        static_cast<std::size_t>(low - numbers.begin()),
+                        static_cast<std::size_t>(high - numbers.begin()),
+                        0,
+                        0,
+                        0,
+                        {}});
   std::vector<double>& shares = out.values.emplace_back();
   for (const double each : numbers) shares.push_back((each - *low) / (*high - *low));
 }
@@ -43,7 +48,7 @@ bool add_word_columns(std::size_t factor, const std::vector<std::string>& words,
       [](const auto& one, const auto& other) { return one.second.count < other.second.count; });
   for (const auto& [word, at] : found) {
     if (word == usual->first) continue;
-    out.labels.push_back({factor, usual->second.first, at.first, 0, 0, 0});
+    out.labels.push_back({factor, usual->second.first, at.first, 0, 0, 0, {}});
     std::vector<double>& has_word = out.values.emplace_back();
     for (const std::string& each : words) has_word.push_back(each == word ? 1 : 0);
   }
@@ -54,6 +59,14 @@ template <class Value>
 bool is_constant(const std::vector<Value>& values) {
   return std::all_of(values.begin(), values.end(),
                      [&](const Value& each) { return each == values.front(); });
+}
+
+bool are_collinear(const std::vector<double>& x, const std::vector<double>& y) {
+  const auto rows = static_cast<Eigen::Index>(x.size());
+  const Eigen::Map<const Eigen::ArrayXd> a(x.data(), rows), b(y.data(), rows);
+  const Eigen::ArrayXd from_a = a - a.mean(), from_b = b - b.mean();
+  return std::abs((from_a * from_b).sum()) >
+         kCollinear * std::sqrt(from_a.square().sum() * from_b.square().sum());
 }
 
 EffectColumns effect_columns(const std::vector<Factor>& factors, FactorEffects& out) {
@@ -83,6 +96,16 @@ std::optional<FactorEffects> factor_effects(const std::vector<Factor>& factors,
   for (std::size_t k = 0; k < columns.values.size(); ++k) {
     matrix.col(static_cast<Eigen::Index>(k)) =
         Eigen::Map<const Eigen::VectorXd>(columns.values[k].data(), rows);
+  }
+  for (std::size_t k = 0; k < columns.labels.size(); ++k) {
+    for (std::size_t other = 0; other < columns.labels.size(); ++other) {
+      const std::size_t factor = columns.labels[other].factor;
+      if (factor == columns.labels[k].factor ||
+          !are_collinear(columns.values[k], columns.values[other])) {
+        continue;
+      }
+      columns.labels[k].collinear.push_back(factor);
+    }
   }
   const auto found =
       main_effects(matrix, Eigen::Map<const Eigen::VectorXd>(response.data(), rows), coverage);

@@ -30,7 +30,13 @@ struct FactorEffect {
   std::size_t factor;        ///< index
   std::size_t from, to;      ///< first candidates that have these two
   double effect, low, high;  ///< in the unit of the response, with the interval of the coverage
+  /// Other factors with which this one rises or falls nearly together: a correlation beyond
+  /// kCollinear.
+  std::vector<std::size_t> collinear = {};
 };
+
+/// Correlation of two columns from which on their effects cannot be separated.
+inline constexpr double kCollinear = 0.9;
 
 struct FactorEffects {
   std::vector<FactorEffect> effects;                       ///< largest first

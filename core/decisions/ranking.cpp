@@ -19,6 +19,10 @@ double variance(const Eigen::MatrixXd& effects, Eigen::Index one, Eigen::Index o
 
 }  // namespace
 
+bool cannot_be_told_apart(double positive_probability, double confidence) {
+  return std::abs(2 * positive_probability - 1) < confidence;
+}
+
 CandidateComparison compare_candidates(const UncertainCandidates& candidates, Eigen::Index one,
                                        Eigen::Index other) {
   CandidateComparison out{};
@@ -49,7 +53,7 @@ std::vector<RankedCandidate> ranked_candidates(const UncertainCandidates& candid
   std::vector<RankedCandidate> out;
   for (const Eigen::Index index : order) {
     const CandidateComparison to_best = compare_candidates(candidates, index, order.front());
-    out.push_back({index, to_best, to_best.higher_probability < confidence});
+    out.push_back({index, to_best, cannot_be_told_apart(to_best.higher_probability, confidence)});
   }
   return out;
 }

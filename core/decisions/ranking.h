@@ -25,6 +25,10 @@ struct CandidateComparison {
   double higher_probability;
 };
 
+/// Whether the two-sided interval of a difference that has a confidence holds 0, given the
+/// probability that the difference is positive. The same in comparisons and rankings.
+bool cannot_be_told_apart(double positive_probability, double confidence);
+
 /// Shared errors cancel as far as their effects are equal.
 CandidateComparison compare_candidates(const UncertainCandidates& candidates, Eigen::Index one,
                                        Eigen::Index other);
@@ -32,8 +36,8 @@ CandidateComparison compare_candidates(const UncertainCandidates& candidates, Ei
 struct RankedCandidate {
   Eigen::Index index;
   CandidateComparison to_best;
-  /// The candidate cannot be told apart from the best one: the probability that its figure is the
-  /// higher one is below the confidence. Of the best one itself true.
+  /// The candidate cannot be told apart from the best one: the interval of the difference that has
+  /// the confidence holds 0 (cannot_be_told_apart()). Of the best one itself true.
   bool is_tied;
 };
 

@@ -50,6 +50,18 @@ HWY_INLINE Real f2_as_published(Real l) {
          0.5003;  // (eq 44)
 }
 
+/// Largest share of a load that a film of this ratio h_cen/sigma_G supports [-]: 1 from 1.128 on, 0
+/// without a film. Fitted to the friction of spur gears, for Lambda = h_0/Ra: asperities carry
+/// (1 - Lambda/2)^2 below 2 (J. Doleschel, dissertation, TU Munich, 2003). Ra is the mean of both
+/// flanks, which is sigma_G/sqrt(pi) of equal Gaussian surfaces. Eq 12 alone lets the thinnest film
+/// carry any load, because its thickness hardly depends on the load.
+template <class Real>
+HWY_INLINE Real supported_share(Real film_ratio) {
+  const double half = 0.5 / std::numbers::inv_sqrtpi;  // of Lambda over the film ratio
+  const Real x = least(half * film_ratio, Real(1.0));
+  return x * (2.0 - x);
+}
+
 /// F_b [N] from tau_0 [Pa], A_asp [m2], zeta [-] and W_asp [N].
 template <class Parameter, class Real>
 HWY_INLINE Real boundary_friction(Parameter shear_strength, Real area, Parameter coefficient,

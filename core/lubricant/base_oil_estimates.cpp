@@ -29,9 +29,9 @@ struct GoldConstants {
 GoldConstants gold_constants(BaseOilClass base_oil) {
   switch (base_oil) {
     case BaseOilClass::kPolyalphaolefin:
-      return {6.605, 0.1360, "polyalphaolefins"};
+      return {7.382, 0.1335, "polyalphaolefins"};
     case BaseOilClass::kEster:
-      return {7.382, 0.1335, "esters"};
+      return {6.605, 0.1360, "esters"};
     case BaseOilClass::kPolyalkyleneGlycol:
       return {5.489, 0.1485, "polyglycols"};
     default:
@@ -119,20 +119,21 @@ Estimate estimate_limiting_shear_stress_coefficient(BaseOilClass base_oil) {
     case BaseOilClass::kPolyalphaolefin:
       return relative(0.029, 0.2, "Hoglund and Jacobson 1986, PAO at 40 C");
     case BaseOilClass::kNaphthenic:
-      return relative(0.083, 0.2, "Habchi 2010, the naphthenic oil Shell T9");
+      return relative(0.06, 0.35,
+                      "Hoglund 1999 (0.047, 0.053) and Habchi 2010 (0.083), naphthenic oils");
     case BaseOilClass::kGroupI:
     case BaseOilClass::kGroupII:
-      return relative(0.05, 0.4, "assumed, between PAO (0.029) and naphthenic oil (0.083)");
+      return relative(0.05, 0.4, "assumed, between PAO (0.029) and naphthenic oil (0.060)");
     case BaseOilClass::kGroupIII:
       return relative(0.04, 0.4, "assumed, between PAO (0.029) and solvent-refined mineral oil");
     case BaseOilClass::kEster:
       return relative(0.035, 0.4, "assumed, somewhat above PAO (0.029)");
     case BaseOilClass::kPolyalkyleneGlycol:
-      return relative(0.027, 0.4, "assumed, somewhat below PAO (0.029)");
+      return relative(0.044, 0.4, "Hoglund 1999, a polyglycol");
     case BaseOilClass::kUnspecified:
       break;
   }
-  return relative(0.045, 0.5, "assumed, between PAO (0.029) and naphthenic oil (0.083)");
+  return relative(0.045, 0.5, "assumed, between PAO (0.029) and naphthenic oil (0.060)");
 }
 
 Estimate estimate_limiting_shear_stress_at_zero_pressure(BaseOilClass base_oil) {

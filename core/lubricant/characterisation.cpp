@@ -20,6 +20,9 @@ constexpr double kKinematicUncertainty = 0.005;        // relative, ASTM D445
 constexpr double kBrookfieldUncertainty = 0.05;        // relative, ASTM D2983
 constexpr double kWaltherTemperatureUncertainty = 15;  // of the T_0 that follows D341 [K]
 constexpr double kMisfit = 3;                          // standard deviations worth a warning
+// Viscosity indices of oils: naphthenic ones reach down, polymer-thickened hydraulic oils up. Below
+// are aromatic extracts, above silicones.
+constexpr double kLeastUsualIndex = -60, kMostUsualIndex = 300;
 
 using Stated = LubricantParameters<std::optional<KnownParameter>>;
 using Known = LubricantParameters<KnownParameter>;
@@ -447,6 +450,7 @@ class Assembly {
     } catch (const Refusal& refusal) {
       warn("VISCOSITY_INDEX_UNDEFINED", "", refusal.what());
     }
+    warn_of_unusual_index();
     const std::optional<double>& sheared = fluid_.sheared_kinematic_viscosity_100;
     const std::optional<double> for_grade = sheared ? sheared : fluid_.kinematic_viscosity_100;
     out_.grade = measured_grade(fluid_, out_);
@@ -456,6 +460,18 @@ class Assembly {
             : fluid.vogel_reference_temperature;
     out_.expected_low_temperature_grade = low_temperature_grade_of(
         out_.temperature_of_150_pascal_seconds, for_grade.value_or(out_.kinematic_viscosity_100));
+  }
+
+  void warn_of_unusual_index() {
+    if (!out_.viscosity_index) return;
+    const double index = *out_.viscosity_index;
+    if (index >= kLeastUsualIndex && index <= kMostUsualIndex) return;
+    warn("VISCOSITY_INDEX_UNUSUAL", "",
+         "The viscosity index is " + number_text(index, 3) + "; usual: " +
+             number_text(kLeastUsualIndex) + " to " + number_text(kMostUsualIndex) + ". " +
+             (index < kLeastUsualIndex ? "Only aromatic extracts lie below"
+                                       : "Only silicones lie above") +
+             ": check the viscosities.");
   }
 
   const FluidMeasurements& fluid_;

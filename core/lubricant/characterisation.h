@@ -113,7 +113,8 @@ struct CharacterisedFluid {
 /// parameter), ESTIMATE_OUT_OF_RANGE, DENSITY_ESTIMATED, EXPANSION_ESTIMATED,
 /// VOGEL_REFERENCE_TEMPERATURE_ASSUMED, VISCOSITY_EXTRAPOLATED (nothing measured at or below 40 C,
 /// or at or above 100 C), VISCOSITY_MISFIT (naming the row), VISCOSITY_INDEX_UNDEFINED,
-/// TEMPERATURE_ASSUMED (of a stated alpha* or lambda).
+/// VISCOSITY_INDEX_UNUSUAL (below -60 or above 300), TEMPERATURE_ASSUMED (of a stated alpha* or
+/// lambda).
 ///
 /// A measured viscosity beyond the limit of VISCOSITY_CONTRADICTED (gross_errors.h) earns no W
 /// grade.

@@ -7,7 +7,7 @@
 
 #include "core/celsius.h"
 #include "core/lubricant/viscosity.h"
-#include "core/lubricant/viscosity_index.h"
+#include "core/lubricant/viscosity_temperature.h"
 #include "core/number_text.h"
 #include "core/refusal.h"
 
@@ -159,23 +159,119 @@ void check_viscosities(const CharacterisedFluid& known, std::vector<GrossError>&
   }
 }
 
-void check_viscosity_index(const FluidMeasurements& fluid, std::vector<GrossError>& errors) {
-  if (!fluid.kinematic_viscosity_40 || !fluid.kinematic_viscosity_100) return;
-  const double kv40 = 1e6 * *fluid.kinematic_viscosity_40;
-  const double kv100 = 1e6 * *fluid.kinematic_viscosity_100;
+/// The measurement that says most of a temperature.
+const MeasuredViscosity& nearest(const CharacterisedFluid& known, double temperature) {
+  return *std::min_element(known.measured_viscosities.begin(), known.measured_viscosities.end(),
+                           [temperature](const auto& a, const auto& b) {
+                             return std::abs(a.point.temperature - temperature) <
+                                    std::abs(b.point.temperature - temperature);
+                           });
+}
+
+/// KV100 and the viscosity index: measured, or those of the law fitted to a table.
+void check_standard_viscosities(const FluidMeasurements& fluid, const CharacterisedFluid& known,
+                                std::vector<GrossError>& errors) {
+  const bool measured = fluid.kinematic_viscosity_40 && fluid.kinematic_viscosity_100;
+  if (!measured && !known.viscosity_fit) return;  // a stated law is held against measurements
+  const auto refuse = [&](const GrossErrorLimit& limit, double temperature,
+                          const std::string& sentence) {
+    const MeasuredViscosity& about = nearest(known, temperature);
+    errors.push_back({limit.code, about.measurement, about.row, sentence});
+  };
+  const double v40 = known.kinematic_viscosity_40, v100 = known.kinematic_viscosity_100;
+  const auto text = [](double viscosity) { return number_text(1e6 * viscosity, 5); };
+  const GrossErrorLimit& viscosity = gross_error_limit("VISCOSITY_IMPLAUSIBLE");
+  if (v100 < viscosity.least || v100 > viscosity.most) {
+    constexpr double kLeastUsual = 1.5e-6, kMostUsual = 100e-6;  // KV100 of lubricants
+    const double corrected = v100 > viscosity.most ? v100 / 1000 : v100 * 1000;
+    const bool is_slip = corrected >= kLeastUsual && corrected <= kMostUsual;
+    refuse(viscosity, kHundredCelsius,
+           std::string(measured ? "KV100 is " : "The viscosities make a KV100 of ") + text(v100) +
+               " mm2/s; allowed: " + viscosity.bound + "." +
+               (is_slip ? " Are mPa s and Pa s exchanged? A factor of 1000 makes it " +
+                              text(corrected) + " mm2/s."
+                        : ""));
+    return;
+  }
+  const GrossErrorLimit& limit = gross_error_limit("VISCOSITY_INDEX_IMPLAUSIBLE");
+  if (!known.viscosity_index) return;  // not defined below 2 mm2/s
+  const double index = *known.viscosity_index;
+  if (index >= limit.least && index <= limit.most) return;
+  refuse(limit, kFortyCelsius,
+         std::string(measured ? "" : "By the law through all viscosities, ") + "KV40 = " +
+             text(v40) + " and KV100 = " + text(v100) + " mm2/s make a viscosity index of " +
+             number_text(index, 3) + "; allowed: " + limit.bound +
+             (index > limit.most
+                  ? ". Is one viscosity given twice, or measured at another temperature?"
+                  : ". Is a digit missing or one too many?"));
+}
+
+constexpr double kColdest = kZeroCelsius + 10;  // where ASTM D341 holds for all oils
+
+/// ASTM D341 through the coldest and the warmest of the viscosities where it holds; nullopt if they
+/// are too close to extrapolate from.
+std::optional<ViscosityTemperatureLine> warm_line(const CharacterisedFluid& known) {
+  constexpr double kApart = 40;  // K
+  std::optional<ViscosityPoint> coldest, warmest;
+  for (const MeasuredViscosity& each : known.measured_viscosities) {
+    const ViscosityPoint& point = each.point;
+    if (point.temperature < kColdest) continue;
+    if (!coldest || point.temperature < coldest->temperature) coldest = point;
+    if (!warmest || point.temperature > warmest->temperature) warmest = point;
+  }
+  if (!coldest || warmest->temperature - coldest->temperature < kApart) return std::nullopt;
+  const auto kinematic = [&](const ViscosityPoint& point) {
+    return KinematicViscosityPoint{point.temperature,
+                                   point.viscosity / density(known.lubricant, point.temperature)};
+  };
   try {
-    const double index = viscosity_index(kv40, kv100);
-    const GrossErrorLimit& limit = gross_error_limit("VISCOSITY_INDEX_IMPLAUSIBLE");
-    if (index >= limit.least && index <= limit.most) return;
-    errors.push_back(
-        {limit.code, Measurement::kKinematicViscosity40, 0,
-         "KV40 = " + number_text(kv40) + " and KV100 = " + number_text(kv100) +
-             " mm2/s make a viscosity index of " + number_text(index, 3) +
-             "; allowed: " + limit.bound +
-             (index > limit.most ? ". Is one viscosity given twice, or measured at another "
-                                   "temperature?"
-                                 : ". Is a digit missing or one too many?")});
-  } catch (const Refusal&) {  // not defined below 2 mm2/s
+    return viscosity_temperature_line(kinematic(*coldest), kinematic(*warmest));
+  } catch (const Refusal&) {
+    return std::nullopt;
+  }
+}
+
+/// " Did you mean 98000 mPa s, 1/100 of it?" where a power of ten brings a cold viscosity nearest
+/// to the ratio to ASTM D341 that oils have; empty if none does.
+std::string power_of_ten_text(const ViscosityPoint& point, double walther,
+                              const GrossErrorLimit& limit) {
+  constexpr double kUsualRatio = 2;
+  double best = 0, lowest = INFINITY;
+  for (const double factor : {1e-3, 1e-2, 0.1, 10.0, 100.0, 1000.0}) {
+    const double ratio = factor * point.viscosity / walther;
+    const double off = std::abs(std::log(ratio / kUsualRatio));
+    if (ratio < limit.least || ratio > limit.most || off >= lowest) continue;
+    best = factor;
+    lowest = off;
+  }
+  if (best == 0) return "";
+  return " Did you mean " + millipascals(best * point.viscosity) + ", " +
+         (best < 1 ? "1/" + number_text(1 / best) + " of it?" : number_text(best) + " times it?");
+}
+
+/// Viscosities that the fit follows, as nothing else says what they should be.
+void check_cold_viscosities(const CharacterisedFluid& known, std::vector<GrossError>& errors) {
+  const auto line = warm_line(known);
+  if (!line) return;
+  const GrossErrorLimit& limit = gross_error_limit("COLD_VISCOSITY_IMPLAUSIBLE");
+  for (const MeasuredViscosity& each : known.measured_viscosities) {
+    const double temperature = each.point.temperature;
+    const bool is_known = std::any_of(errors.begin(), errors.end(), [&](const GrossError& error) {
+      return error.measurement == each.measurement && error.row == each.row;
+    });
+    if (temperature >= kColdest || is_known) continue;
+    try {
+      const double walther =
+          kinematic_viscosity(*line, temperature) * density(known.lubricant, temperature);
+      if (!contradicts(limit, each.point, walther)) continue;
+      errors.push_back({limit.code, each.measurement, each.row,
+                        millipascals(each.point.viscosity) + " at " + celsius_text(temperature) +
+                            " is " + number_text(each.point.viscosity / walther, 3) +
+                            " times what ASTM D341 extrapolates from the warm viscosities, " +
+                            number_text(1e3 * walther, 3) + " mPa s; allowed: " + limit.bound +
+                            "." + power_of_ten_text(each.point, walther, limit)});
+    } catch (const Refusal&) {  // the line ends before
+    }
   }
 }
 
@@ -220,9 +316,10 @@ std::string likely_slip(std::span<const MeasuredViscosity> viscosities) {
 std::vector<GrossError> gross_errors(const FluidMeasurements& fluid,
                                      const CharacterisedFluid& known) {
   std::vector<GrossError> errors;
-  check_viscosity_index(fluid, errors);
+  check_standard_viscosities(fluid, known, errors);
   check_sheared(fluid, errors);
   check_viscosities(known, errors);
+  check_cold_viscosities(known, errors);
   return errors;
 }
 

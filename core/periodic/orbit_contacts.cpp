@@ -129,7 +129,7 @@ bool OrbitContacts::add_contacts_at(const OrbitPiece& piece, int part, ContactsA
     if (solved.by_scalar_kernel(index) || !both_move) {
       contact.lane = -1 - static_cast<int>(of_scalar_kernel_.size());
       of_scalar_kernel_.push_back(
-          model_.at(conditions, solved.film_load(index), figures.contact_temperature));
+          model_.at(conditions, solved.ellipse_load(index), figures.contact_temperature));
       if (of_scalar_kernel_.back().status != SensitivityStatus::kOk) return false;
       one_sided_ = one_sided_ || of_scalar_kernel_.back().one_sided;
     } else {
@@ -145,7 +145,7 @@ bool OrbitContacts::add_contacts_at(const OrbitPiece& piece, int part, ContactsA
                    (options.hertz_solution == HertzSolution::kSimplified &&
                     std::abs(flank.radius_x - flank.radius_y) <= 1e-9 * std::abs(flank.radius_y));
       contact.lane = vectors_.add(*geometries, place, conditions,
-                                  {solved.film_load(index), figures.contact_temperature,
+                                  {solved.ellipse_load(index), figures.contact_temperature,
                                    figures.mean_shear_stress, figures.limiting_stress_area_share});
     }
     contacts_.push_back(contact);

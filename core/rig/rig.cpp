@@ -28,7 +28,8 @@ double load_of_mean_pressure(const SolidPair& solids, const EffectiveRadii& radi
 Rig::Rig(const RigScene& scene, double supply_temperature)
     : radii_(scene.radii),
       is_smooth_(scene.roughness.asperity_density == 0),
-      contact_(scene.lubricant, scene.solids, roughness_of(scene), scene.boundary,
+      contact_(scene.lubricant, scene.solids, roughness_of(scene),
+               boundary_friction(scene.boundary, scene.lubricant_boundary, supply_temperature),
                supply_temperature, 0, scene.options) {}
 
 RigPoint Rig::at(const RigCondition& condition) const {
@@ -44,9 +45,8 @@ RigPoint Rig::at(const RigCondition& condition) const {
                                          std::to_string(std::lround(s.contact_temperature)) +
                                          " K, and steel melts at about 1800 K");
   }
-  const double boundary = s.sliding_speed > 0 ? s.boundary_friction * s.sliding_speed /
-                                                    (s.sliding_speed + kBoundaryCreepSpeed)
-                                              : 0;
+  const double slip = std::abs(condition.slide_roll_ratio);
+  const double boundary = s.boundary_friction * slip / (slip + kBoundaryCreep);
   const double friction = s.viscous_friction + boundary;
   RigPoint out{};
   out.traction_coefficient = std::copysign(friction / condition.load, condition.slide_roll_ratio);
@@ -61,6 +61,10 @@ RigPoint Rig::at(const RigCondition& condition) const {
   out.flash_temperature_rise = s.flash_temperature_rise;
   out.boundary_friction_share = friction > 0 ? boundary / friction : 0;
   out.limiting_stress_area_share = s.limiting_stress_area_share;
+  out.inlet_heating_factor =
+      contact_.inlet_heating_factor(s.entrainment_speed * s.entrainment_speed,
+                                    s.sliding_speed * s.sliding_speed, s.maximum_pressure);
+  out.inlet_viscosity = s.inlet_viscosity;
   return out;
 }
 

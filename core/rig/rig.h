@@ -12,11 +12,12 @@ namespace tribodyn {
 /// The specimens and their oil. SI units.
 struct RigScene {
   Lubricant lubricant;
-  SolidPair solids;      ///< body 1, the ball or ring, and body 2, the disc
-  EffectiveRadii radii;  ///< x along the motion; a ball on a flat disc has its radius twice
-  Roughness roughness;   ///< asperity_density 0: smooth specimens, without asperities
-  BoundaryFriction boundary;
+  SolidPair solids;           ///< body 1, the ball or ring, and body 2, the disc
+  EffectiveRadii radii;       ///< x along the motion; a ball on a flat disc has its radius twice
+  Roughness roughness;        ///< asperity_density 0: smooth specimens, without asperities
+  BoundaryFriction boundary;  ///< of the surface
   ModelOptions options;
+  LubricantBoundary lubricant_boundary = {};
 };
 
 /// What the machine sets at one oil temperature.
@@ -38,12 +39,14 @@ struct RigPoint {
   double flash_temperature_rise;      ///< (dT_f)_av, eq 39
   double boundary_friction_share;     ///< F_b/F_fr [-]; 0 without friction
   double limiting_stress_area_share;  ///< share of the contact area on tau_L [-]
+  double inlet_heating_factor;        ///< phi_T, whether the model has it or not [-]
+  double inlet_viscosity;             ///< [Pa s]
 };
 
-/// The sliding speed [m/s] at which half of the asperities' friction of eq 40 acts in a rig: F_b
-/// goes with V_s/(V_s + this), so that a traction curve passes through 0 at zero sliding. Eq 40 has
-/// no such factor. Assumed: 1 % of the sliding at a slide-roll ratio of 1 % and 1 m/s.
-inline constexpr double kBoundaryCreepSpeed = 1e-4;
+/// The slide-roll ratio [-] at which half of the asperities' friction of eq 40 acts in a rig: F_b
+/// is multiplied by S/(S + this), so that a traction curve passes through 0 at zero sliding. Eq 40
+/// has no such factor. Assumed: it takes 1 % at a slide-roll ratio of 1 %, at any speed.
+inline constexpr double kBoundaryCreep = 1e-4;
 
 /// Returns the load [N] under which the mean pressure of the dry contact by exact Hertz, 2/3 of its
 /// greatest, is `mean_pressure` [Pa] > 0.

@@ -15,6 +15,8 @@ inline constexpr double kBoundaryLubrication = 1;
 /// Greatest pressures of the contacts at which the friction model was compared with measurements,
 /// fig 5 [Pa].
 inline constexpr double kLowestComparedPressure = 0.85e9, kHighestComparedPressure = 1.35e9;
+/// Viscosities at the inlet at which the laws hold [Pa s], and the thickest film [m].
+inline constexpr double kLeastViscosity = 1e-4, kMostViscosity = 1e6, kThickestFilm = 10e-6;
 
 /// Limits of the contacts of a mesh that a user states, e.g. of a scuffing test or of a material.
 /// They change no figure.

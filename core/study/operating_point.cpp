@@ -129,9 +129,12 @@ std::string why_no_sensitivities(const Scene& scene, const PointResult& result) 
          "the figures have no derivatives";
 }
 
-void add_warnings(const Scene& scene, const PointOptions& options, PointResult& result) {
+void add_warnings(PreparedScene& prepared, const PointOptions& options, PointResult& result) {
+  const Scene& scene = prepared.scene();
   std::vector<RangeWarning> of_the_response = std::move(result.warnings);
-  result.warnings = range_warnings(scene, result);
+  const RangeFigures figures = range_figures(prepared, result);
+  result.inlet_heating_factor = figures.inlet_heating_factor;
+  result.warnings = range_warnings(scene, figures);
   std::move(of_the_response.begin(), of_the_response.end(), std::back_inserter(result.warnings));
   if (auto unused = unused_march_tolerance(options, result)) {
     result.warnings.push_back(*std::move(unused));
@@ -165,7 +168,7 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
                           (scene.gear_set.pinion_teeth * result.mean_pinion_speed);
     result.statistics.slowest_decay_rate = -std::log(multiplier) / period;
   }
-  add_warnings(scene, options, result);
+  add_warnings(prepared, options, result);
   return result;
 }
 

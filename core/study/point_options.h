@@ -83,6 +83,8 @@ struct PointOptions {
   /// screen_point() and solve_point_figures(): also PointFigures::contact, for some 5 us (measured
   /// at 20 to 140 km/h; 3 on twelve steps a mesh cycle). A PointResult has it all.
   bool contact_summary = false;
+  /// screen_point() and solve_point_figures(): warnings have sentences, not codes alone.
+  bool warning_sentences = true;
   /// Called between mesh cycles with the fraction done in [0, 1]; false cancels (throws Cancelled).
   std::function<bool(double)> progress;
 };

@@ -58,6 +58,9 @@ struct PowerBalance {
 struct RangeWarning {
   std::string code;      ///< stable UPPER_SNAKE_CASE
   std::string sentence;  ///< with the value, its unit and the validated range
+  /// Grows with the distance from the range, to tell which of several warnings of one code is about
+  /// the place that is furthest outside.
+  double excess = 0;
 };
 
 /// The other steady state at the same operating point, in short.
@@ -110,8 +113,11 @@ struct PointResult {
   Extremes flash_temperature_rise;  ///< (dT_f)_av, eq 39 [K]
   /// F_fr/W [-]. Its mean is the friction coefficient of the mesh: int sum F_fr dt/int sum W dt.
   Extremes friction_coefficient;
-  Extremes pinion_specific_sliding;       ///< see SpecificSliding [-]
-  Extremes gear_specific_sliding;         ///< likewise
+  Extremes pinion_specific_sliding;  ///< see SpecificSliding [-]
+  Extremes gear_specific_sliding;    ///< likewise
+  /// Least phi_T of the loaded flanks, to what shear heating of the inlet thins the film, whether
+  /// the model has it or not [-].
+  double inlet_heating_factor = 1;
   double limiting_stress_time_share = 0;  ///< share of time with a contact centre on tau_L [-]
   double limiting_stress_area_share = 0;  ///< load-time mean of the area share on tau_L [-]
 

@@ -21,13 +21,14 @@ PreparedGearSet::PreparedGearSet(const GearSet& gear_set, const Solid& solid,
       system_(mesh_, gear_set_.dynamics, options),
       modes_(linear_modes(system_)),
       grids_(mesh_, gear_set_.dynamics.half_backlash,
-             reduced_modulus(solid.youngs_modulus, solid.poissons_ratio), options) {}
+             reduced_modulus(solid.youngs_modulus, solid.poissons_ratio), options),
+      extremes_(flank_extremes(gear_set_)) {}
 
 PreparedScene::PreparedScene(const Scene& scene, std::shared_ptr<PreparedGearSet> gear_set,
                              InstructionSet instruction_set)
     : scene_(scene),
       contacts_(
-          FlankContactModel(scene.lubricant, scene.solid, scene.roughness, scene.boundary,
+          FlankContactModel(scene.lubricant, scene.solid, scene.roughness, boundary_friction(scene),
                             scene.sump_temperature, scene.inlet_temperature_rise, scene.options),
           instruction_set),
       gear_set_(gear_set ? std::move(gear_set)

@@ -6,6 +6,7 @@
 #include "core/contact/flank_contact_batch.h"
 #include "core/driveline/gear_pair_system.h"
 #include "core/driveline/linear_modes.h"
+#include "core/gear/flank_extremes.h"
 #include "core/integrate/mesh_grid.h"
 #include "core/periodic/coulomb_orbits.h"
 #include "core/periodic/loud_response.h"
@@ -31,6 +32,7 @@ class PreparedGearSet {
   CoulombOrbits& coulomb_orbits() { return coulomb_orbits_; }
   QuasiStaticScreen& quasi_static_screen() { return quasi_static_screen_; }
   OtherResponses& other_responses() { return other_responses_; }
+  const FlankExtremes& extremes() const { return extremes_; }
 
  private:
   GearSet gear_set_;
@@ -41,6 +43,7 @@ class PreparedGearSet {
   CoulombOrbits coulomb_orbits_;
   QuasiStaticScreen quasi_static_screen_;
   OtherResponses other_responses_;
+  FlankExtremes extremes_;
 };
 
 /// A scene with everything that its points share. One thread at a time. Keeps the scene's

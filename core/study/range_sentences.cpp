@@ -76,14 +76,33 @@ std::string limiting_stress_sentence(const FluidGrounds& grounds, double area_sh
          " and is taken to be independent of temperature";
 }
 
-std::string cold_inlet_sentence(double inlet_temperature, const ModelOptions& options) {
-  const double inlet = inlet_temperature - kZeroCelsius;
-  if (!(inlet < 20)) return {};
-  return "the inlet is at " + brief_text(inlet) +
-         (options.inlet_shear_heating
-              ? " C; starvation thins the film of cold oil and is not modelled"
-              : " C; inlet shear heating and starvation thin the film of cold oil and are not "
-                "modelled");
+std::string inlet_heating_sentence(double heating_factor, const ModelOptions& options) {
+  constexpr double kWorthIncluding = 0.95;
+  if (options.inlet_shear_heating || !(heating_factor < kWorthIncluding)) return {};
+  return "shear heating of the inlet, which the model leaves out, thins the film to " +
+         brief_text(100 * heating_factor) +
+         " % of its thickness: do not rank oils here without inlet_shear_heating";
+}
+
+std::string starvation_sentence(double heating_factor, const ModelOptions& options) {
+  constexpr double kLikelyToStarve = 0.5;
+  if (!options.inlet_shear_heating || !(heating_factor < kLikelyToStarve)) return {};
+  return "shear heating of the inlet thins the film to " + brief_text(100 * heating_factor) +
+         " % of its thickness; starvation thins the film of so thick an oil further and is not "
+         "modelled";
+}
+
+std::string viscosity_range_sentence(double viscosity) {
+  if (viscosity >= kLeastViscosity && viscosity <= kMostViscosity) return {};
+  return "the viscosity at the inlet is " + brief_text(viscosity) + " Pa s, " +
+         (viscosity < kLeastViscosity ? "below" : "above") + " the " +
+         range_text(kLeastViscosity, kMostViscosity, "Pa s") + " of lubricating oils";
+}
+
+std::string thick_film_sentence(double film_thickness) {
+  if (!(film_thickness > kThickestFilm)) return {};
+  return "the film is " + brief_text(1e6 * film_thickness) + " um thick; above " +
+         brief_text(1e6 * kThickestFilm) + " um no contact is fed with so much oil";
 }
 
 std::string isothermal_sentence(const ModelOptions& options) {

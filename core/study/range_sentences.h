@@ -24,8 +24,14 @@ std::string film_ratio_sentence(double film_ratio);
 std::string roughness_product_sentence(const Roughness& roughness);
 /// Of the share of the loaded area on the limiting shear stress [-].
 std::string limiting_stress_sentence(const FluidGrounds& grounds, double area_share);
-/// Of the temperature at the contact inlet [K].
-std::string cold_inlet_sentence(double inlet_temperature, const ModelOptions& options);
+/// Of what shear heating of the inlet thins the film to [-], if the model leaves it out.
+std::string inlet_heating_sentence(double heating_factor, const ModelOptions& options);
+/// Of the same, if the model includes it: oil as thick starves the inlet too.
+std::string starvation_sentence(double heating_factor, const ModelOptions& options);
+/// Of the viscosity at the contact inlet [Pa s].
+std::string viscosity_range_sentence(double viscosity);
+/// Of the thickness of the film [m].
+std::string thick_film_sentence(double film_thickness);
 std::string isothermal_sentence(const ModelOptions& options);
 
 }  // namespace tribodyn

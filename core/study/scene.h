@@ -14,13 +14,20 @@ struct Scene {
   Lubricant lubricant;
   GearSet gear_set;
   Roughness roughness;
-  BoundaryFriction boundary;
+  BoundaryFriction boundary;  ///< of the surface
   Solid solid;
   Vehicle vehicle;
   double sump_temperature;        ///< T_b [K]
   double inlet_temperature_rise;  ///< eq 14 [K]
   ModelOptions options;
   FluidGrounds fluid_grounds = {};
+  LubricantBoundary lubricant_boundary = {};
 };
+
+/// The boundary friction of the scene's lubricant on its surface.
+inline BoundaryFriction boundary_friction(const Scene& scene) {
+  return boundary_friction(scene.boundary, scene.lubricant_boundary,
+                           scene.sump_temperature + scene.inlet_temperature_rise);
+}
 
 }  // namespace tribodyn

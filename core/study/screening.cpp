@@ -1,16 +1,19 @@
 #include "core/study/screening.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/study/operating_point.h"
 #include "core/study/point_by_shooting.h"
 #include "core/study/quasi_static_point.h"
+#include "core/study/range_warnings.h"
 #include "core/study/response_warnings.h"
 
 namespace tribodyn {
 namespace {
 
-PointFigures figures_of(const PointProblem& problem, const PeriodicOrbit& orbit, PointModel model) {
+PointFigures figures_of(PreparedScene& prepared, const PointProblem& problem,
+                        const PeriodicOrbit& orbit, PointModel model) {
   const GearPairSystem& system = problem.system();
   const OperatingTarget& target = problem.target;
   PointFigures out;
@@ -32,7 +35,11 @@ PointFigures figures_of(const PointProblem& problem, const PeriodicOrbit& orbit,
   out.estimated_relative_error = known_error(orbit.estimated_error);
   out.contact_solutions = problem.tally.solutions;
   out.model = model;
-  out.warnings = orbit_warnings(orbit);
+  const bool with_sentences = problem.options.warning_sentences;
+  out.warnings = range_warnings(prepared.scene(),
+                                range_figures(prepared, orbit, model, target.mean_pinion_speed),
+                                with_sentences);
+  for (RangeWarning& each : orbit_warnings(orbit)) out.warnings.push_back(std::move(each));
   if (auto other = coexistence_warning(problem, orbit.contact_loss)) {
     out.warnings.push_back(*std::move(other));
   }
@@ -57,7 +64,7 @@ std::optional<PointFigures> find_figures(PreparedScene& prepared,
   } else if (may_choose(options, std::nullopt)) {
     quasi_static = choose_quasi_static(problem);
   }
-  if (quasi_static) return figures_of(problem, *quasi_static, PointModel::kQuasiStatic);
+  if (quasi_static) return figures_of(prepared, problem, *quasi_static, PointModel::kQuasiStatic);
   if (options.model == PointModel::kQuasiStatic) return std::nullopt;
   std::optional<OrbitSearch> search = search_from(problem, options.start, std::nullopt);
   if (!search) return std::nullopt;
@@ -69,7 +76,7 @@ std::optional<PointFigures> find_figures(PreparedScene& prepared,
       find_orbit(problem.periodic(options.tolerance), *search, work, aperiodic);
   if (!orbit && options.gives_up_early) refuse_shooting(problem);
   if (!orbit) return std::nullopt;
-  PointFigures figures = figures_of(problem, *orbit, PointModel::kFull);
+  PointFigures figures = figures_of(prepared, problem, *orbit, PointModel::kFull);
   if (options.sensitivities) {
     if (const auto sensitivity = sensitivity_of(problem, *orbit)) {
       figures.sensitivities = point_sensitivities(scene, condition, orbit->torques, *sensitivity);

@@ -23,7 +23,7 @@ struct PointFigures {
   std::optional<double> estimated_relative_error;  ///< absent: not estimated
   long contact_solutions = 0;
   PointModel model = PointModel::kFull;  ///< used
-  std::vector<RangeWarning> warnings;  ///< of the response; of a marched one, all of a PointResult
+  std::vector<RangeWarning> warnings;    ///< as in PointResult
   /// By PointOptions::contact_summary. Absent where no flank carries a load.
   std::optional<ContactSummary> contact;
   /// By PointOptions::sensitivities, on the grid of the figures.

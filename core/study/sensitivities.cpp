@@ -47,6 +47,8 @@ std::vector<SceneParameter> of_pressure_response(const Lubricant& l) {
 std::vector<SceneParameter> scene_parameters(const Scene& s) {
   using enum ContactInput;
   const Lubricant& l = s.lubricant;
+  const BoundaryFriction boundary = boundary_friction(s);
+  const LubricantBoundary& of_lubricant = s.lubricant_boundary;
   std::vector<SceneParameter> out = {
       {"lubricant.vogel_viscosity_prefactor",
        "Pa s",
@@ -90,13 +92,17 @@ std::vector<SceneParameter> scene_parameters(const Scene& s) {
        "m",
        s.roughness.composite_rms_height,
        {kCompositeRmsHeight}},
-      {"boundary.tribofilm_shear_strength",
+      {of_lubricant.tribofilm_shear_strength ? "lubricant.tribofilm_shear_strength"
+                                             : "boundary.tribofilm_shear_strength",
        "Pa",
-       s.boundary.tribofilm_shear_strength,
+       boundary.tribofilm_shear_strength,
        {kTribofilmShearStrength}},
-      {"boundary.asperity_friction_coefficient",
+      {of_lubricant.asperity_friction_coefficient ? "lubricant.asperity_friction_coefficient"
+       : of_lubricant.coefficient_by_temperature.empty()
+           ? "boundary.asperity_friction_coefficient"
+           : "lubricant.asperity_friction_by_temperature",
        "1",
-       s.boundary.asperity_friction_coefficient,
+       boundary.asperity_friction_coefficient,
        {kAsperityFrictionCoefficient}},
       {"solid.youngs_modulus",
        "Pa",

@@ -56,6 +56,12 @@ double wave_length_in_spacings(const SpectralMoments& moments, double spacing);
 /// even white noise has waves of 5.3 spacings after that filter, and 3 without one.
 inline constexpr double kLeastSpacingsPerWave = 4;
 
+/// What profiles of machined and polished surfaces have, with some reserve (assumed): rms heights
+/// [m] of optical discs to those of castings, and rms slopes up to those that a stylus can follow.
+/// Beyond them a unit is wrong.
+inline constexpr double kLeastRmsHeight = 1e-9, kMostRmsHeight = 1e-4;
+inline constexpr double kLeastRmsSlope = 5e-4, kMostRmsSlope = 2;
+
 /// Eq 46, the isotropic surface equivalent to an anisotropic one measured along the axial and the
 /// radial direction: m0 is the arithmetic mean, m2 and m4 are the geometric means sqrt(m_a m_r).
 /// The paper prints sqrt(m_a + m_r), which has the wrong dimension for m4 and gives sqrt(2 m)

@@ -1,5 +1,7 @@
 #include "core/surface/surface.h"
 
+#include <algorithm>
+
 #include "core/parameter_check.h"
 
 namespace tribodyn {
@@ -18,6 +20,32 @@ void check(const BoundaryFriction& b) {
   check.expect("asperity_friction_coefficient", b.asperity_friction_coefficient, "1",
                Bound::kNotNegative);
   check.conclude();
+}
+
+BoundaryFriction boundary_friction(const BoundaryFriction& of_surface,
+                                   const LubricantBoundary& of_lubricant,
+                                   double inlet_temperature) {
+  BoundaryFriction out = of_surface;
+  if (of_lubricant.tribofilm_shear_strength) {
+    out.tribofilm_shear_strength = *of_lubricant.tribofilm_shear_strength;
+  }
+  if (of_lubricant.asperity_friction_coefficient) {
+    out.asperity_friction_coefficient = *of_lubricant.asperity_friction_coefficient;
+  }
+  const auto& table = of_lubricant.coefficient_by_temperature;
+  if (table.empty()) return out;
+  const auto above =
+      std::upper_bound(table.begin(), table.end(), inlet_temperature,
+                       [](double value, const auto& entry) { return value < entry.first; });
+  if (above == table.begin() || above == table.end()) {
+    out.asperity_friction_coefficient = (above == table.end() ? table.back() : *above).second;
+    return out;
+  }
+  const auto& below = *(above - 1);
+  out.coefficient_slope = (above->second - below.second) / (above->first - below.first);
+  out.asperity_friction_coefficient =
+      below.second + out.coefficient_slope * (inlet_temperature - below.first);
+  return out;
 }
 
 void check(const Solid& s) {

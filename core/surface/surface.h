@@ -1,5 +1,9 @@
 #pragma once
 
+#include <optional>
+#include <utility>
+#include <vector>
+
 namespace tribodyn {
 
 /// Greenwood-Tripp description of the composite rough surface (eqs 41, 42, 48).
@@ -15,9 +19,24 @@ using Roughness = RoughnessOf<double>;
 template <class Real>
 struct BoundaryFrictionOf {
   Real tribofilm_shear_strength;       ///< tau_0 [Pa]
-  Real asperity_friction_coefficient;  ///< zeta [-]
+  Real asperity_friction_coefficient;  ///< zeta at the inlet temperature [-]
+  double coefficient_slope = 0;        ///< d zeta/d T_in [1/K]
 };
 using BoundaryFriction = BoundaryFrictionOf<double>;
+
+/// The boundary friction that a lubricant's additives bring to any surface. What is absent is the
+/// surface's.
+struct LubricantBoundary {
+  std::optional<double> tribofilm_shear_strength;       ///< tau_0 [Pa]
+  std::optional<double> asperity_friction_coefficient;  ///< zeta [-]
+  /// zeta by temperature of the inlet, instead: rising temperatures [K] and coefficients; linear
+  /// between, constant beyond.
+  std::vector<std::pair<double, double>> coefficient_by_temperature;
+};
+
+/// The boundary friction of a lubricant on a surface at an inlet temperature [K].
+BoundaryFriction boundary_friction(const BoundaryFriction& of_surface,
+                                   const LubricantBoundary& of_lubricant, double inlet_temperature);
 
 /// The material of a body in contact.
 template <class Real>

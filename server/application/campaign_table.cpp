@@ -12,6 +12,7 @@
 #include "server/contract/constraints.h"
 #include "server/mapping/history_columns.h"
 #include "server/simulation/campaign_columns.h"
+#include "server/simulation/point_evaluation.h"
 
 namespace tribodyn::server {
 namespace {
@@ -23,6 +24,12 @@ struct TableWindow {
   std::int64_t end_row = 0;
   std::vector<RowCondition> conditions;  ///< of the rows; empty: all
 };
+
+std::string_view unit_of(const std::string& column) {
+  if (column.starts_with("elasticity.")) return "";
+  const auto* parameter = find_candidate_parameter(column);
+  return parameter != nullptr ? find_constraint(*parameter)->unit : history_column_unit(column);
+}
 
 class CampaignSource final : public ColumnSource<v1::ReadCampaignResponse> {
  public:
@@ -46,10 +53,7 @@ class CampaignSource final : public ColumnSource<v1::ReadCampaignResponse> {
     for (const TableColumn& each : window_.columns) {
       v1::HistorySchema::Column* column = out.add_columns();
       column->set_name(each.name);
-      // The end of an elasticity's name is the unit of its parameter.
-      if (!each.name.starts_with("elasticity.")) {
-        column->set_unit(std::string(history_column_unit(each.name)));
-      }
+      column->set_unit(std::string(unit_of(each.name)));
     }
     out.set_start_row(window_.start_row);
     out.set_row_count(rows_);

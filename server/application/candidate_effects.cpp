@@ -15,7 +15,6 @@
 namespace tribodyn::server {
 namespace {
 
-constexpr char kUncertaintyEnd[] = ".uncertainty";
 constexpr double kDefaultCoverage = 0.95;
 
 /// The factors of a linear model, and the names of their columns.
@@ -37,16 +36,13 @@ void add_factor(DecisionTable& table, const std::string& name, EffectFactors& ou
 EffectFactors effect_factors(DecisionTable& table,
                              const v1::EstimateCandidateEffectsRequest& request,
                              Violations& violations) {
-  std::vector<std::string> all, usual;
+  std::vector<std::string> all, usual;  // usual: those that the model uses
   for (const v1::CandidateColumn& each : table.columns().table().candidate_columns()) {
     all.push_back(each.path());
     usual.push_back(each.path());
   }
   for (const v1::CandidateAttribute& each : table.columns().table().candidate_attributes()) {
     all.push_back(each.name());
-    if (each.name() != DecisionTable::kNames && !each.name().ends_with(kUncertaintyEnd)) {
-      usual.push_back(each.name());
-    }
   }
   EffectFactors out;
   for (int i = 0; i < request.columns_size(); ++i) {
@@ -139,7 +135,11 @@ Outcome<v1::EstimateCandidateEffectsResponse> estimate_candidate_effects(
     effect.set_effect(each.effect);
     effect.set_effect_minimum(each.low);
     effect.set_effect_maximum(each.high);
+    for (const std::size_t other : each.collinear) {
+      effect.add_collinear_columns(factors.columns[other]);
+    }
   }
+  add_warnings(table.warning_bits(), candidates, *out.mutable_warnings());
   for (const auto& [factor, reason] : found->left_out) {
     v1::ColumnWithoutEffect& column = *out.add_left_out();
     column.set_column(factors.columns[factor]);

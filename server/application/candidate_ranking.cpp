@@ -5,12 +5,15 @@
 
 #include "core/decisions/ranking.h"
 #include "core/refusal.h"
+#include "core/study/warning_kinds.h"
+#include "core/uncertainty/spread.h"
 #include "server/application/campaign_decisions.h"
 #include "server/application/campaigns.h"
 #include "server/application/decision_table.h"
 #include "server/application/errors.h"
 #include "server/contract/check_message.h"
 #include "server/simulation/candidate_uncertainty.h"
+#include "server/simulation/input_deviations.h"
 #include "server/storage/resource_lookup.h"
 
 namespace tribodyn::server {
@@ -18,57 +21,35 @@ namespace {
 
 constexpr int kDefaultCount = 20;
 constexpr double kDefaultConfidence = 0.95;
+constexpr int kMostRefused = 100;
 
 /// How the best candidates compare with the best one.
 struct Comparisons {
-  std::vector<UncertainParameter> parameters;
-  std::vector<std::optional<v1::CandidateComparison>> of;  ///< of the best candidates, in order
+  DrawnCandidates drawn;
+  /// Of the best candidates, in order; empty where no uncertainty is stated.
+  std::vector<std::optional<v1::CandidateComparison>> of;
 };
 
-/// Returns the comparisons of candidates with the first one. `effects`: by candidate and parameter.
-std::vector<std::optional<v1::CandidateComparison>> comparisons_of(
-    const std::vector<std::size_t>& candidates, const CandidateValues& figure, double sign,
-    const std::vector<UncertainParameter>& parameters,
-    const std::vector<std::vector<double>>& effects, double confidence) {
-  std::vector<std::optional<v1::CandidateComparison>> out(candidates.size());
-  std::vector<std::size_t> whole;  // positions of candidates with all effects
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const bool is_whole = std::all_of(effects[i].begin(), effects[i].end(),
-                                      [](double each) { return std::isfinite(each); });
-    if (is_whole) whole.push_back(i);
+/// Returns how a candidate compares with the best one, by the draws that the model refuses of
+/// neither.
+std::optional<v1::CandidateComparison> comparison(const std::vector<double>& drawn,
+                                                  const std::vector<double>& of_best, double stated,
+                                                  double solver_error, double sign, int draws,
+                                                  double confidence) {
+  if (drawn.empty() || of_best.empty()) return std::nullopt;
+  std::vector<double> own, better_by;
+  for (std::size_t n = 0; n < drawn.size(); ++n) {
+    if (!std::isfinite(drawn[n]) || !std::isfinite(of_best[n])) continue;
+    own.push_back(drawn[n]);
+    better_by.push_back(sign * (of_best[n] - drawn[n]) + solver_error);
   }
-  if (whole.empty() || whole.front() != 0) return out;  // nothing to compare with
-  const auto shared = std::count_if(parameters.begin(), parameters.end(),
-                                    [](const auto& each) { return each.is_shared; });
-  const auto rows = static_cast<Eigen::Index>(whole.size());
-  UncertainCandidates compared{
-      Eigen::VectorXd(rows), Eigen::VectorXd::Zero(rows),
-      Eigen::MatrixXd(rows, static_cast<Eigen::Index>(parameters.size()) - shared),
-      Eigen::MatrixXd(rows, shared)};
-  for (Eigen::Index row = 0; row < rows; ++row) {
-    const std::size_t position = whole[static_cast<std::size_t>(row)];
-    const std::size_t candidate = candidates[position];
-    compared.values(row) = sign * figure.values[candidate];
-    if (!figure.solver_errors.empty())
-      compared.solver_errors(row) = figure.solver_errors[candidate];
-    Eigen::Index next_own = 0, next_shared = 0;
-    for (std::size_t k = 0; k < parameters.size(); ++k) {
-      if (parameters[k].is_shared) {
-        compared.shared_effects(row, next_shared++) = sign * effects[position][k];
-      } else {
-        compared.own_effects(row, next_own++) = sign * effects[position][k];
-      }
-    }
-  }
-  for (const tribodyn::RankedCandidate& each : ranked_candidates(compared, confidence)) {
-    const std::size_t position = whole[static_cast<std::size_t>(each.index)];
-    double variance = 0;
-    for (const double effect : effects[position]) variance += effect * effect;
-    v1::CandidateComparison& comparison = out[position].emplace();
-    comparison.set_standard_uncertainty(std::sqrt(variance));
-    comparison.set_worse_probability(each.to_best.higher_probability);
-    comparison.set_tied(each.is_tied);
-  }
+  const Spread spread = spread_of_draws(own, draws, stated);
+  if (!std::isfinite(spread.standard_deviation)) return std::nullopt;
+  v1::CandidateComparison out;
+  out.set_standard_uncertainty(spread.standard_deviation);
+  const bool is_best = &drawn == &of_best;
+  out.set_worse_probability(is_best ? 0.5 : share_below_zero(better_by));
+  out.set_tied(is_best || cannot_be_told_apart(out.worse_probability(), confidence));
   return out;
 }
 
@@ -80,32 +61,25 @@ Comparisons compare_best(Application& application, const v1::RankCandidatesReque
   Comparisons out;
   const FoundFigure& figure = table.found(0);
   const StoredCampaign& stored = figure.source->stored;
-  const bool is_computed = figure.column.kind == TableColumn::Kind::kStored;
-  std::optional<CampaignInputs> inputs;
-  if (is_computed && !best.empty()) {
-    inputs = stored_campaign_inputs(
-        stored, application.store.candidate_table(stored.id, call.limits),
-        accepted_lookup(application.store, stored.project, stored.revisions));
-    out.parameters = uncertain_parameters(request, *inputs);
-  }
-  std::size_t count = best.size();
-  if (!out.parameters.empty()) {
-    const std::size_t points =
-        2 * out.parameters.size() * static_cast<std::size_t>(stored.conditions);
-    count = std::min(count, kMaximumComparisonPoints / points);
-  }
-  const std::vector<std::size_t> compared(best.begin(),
-                                          best.begin() + static_cast<std::ptrdiff_t>(count));
-  std::vector<std::vector<double>> effects(count);
-  if (!out.parameters.empty() && count > 0) {
-    const ConditionAggregate aggregate = DecisionTable::aggregate(figure);
-    const EffectsStudy study{out.parameters, compared, figure.column.number, aggregate};
-    effects = study.compute(std::move(*inputs), *application.gear_sets,
+  if (figure.column.kind != TableColumn::Kind::kStored || best.empty()) return out;
+  const ConditionAggregate aggregate = DecisionTable::aggregate(figure);
+  CandidateDraws draws{request, best, figure.column.number, aggregate};
+  draws.candidates.resize(std::min(best.size(), kMaximumComparisonPoints / draws.points_of_each()));
+  CampaignInputs inputs =
+      stored_campaign_inputs(stored, application.store.candidate_table(stored.id, call.limits),
+                             accepted_lookup(application.store, stored.project, stored.revisions));
+  out.drawn = draws.compute(std::move(inputs), *application.gear_sets,
                             [&call] { return call.limits.are_over(); });
+  const CandidateValues& values = table.figures().front();
+  const auto solver_error = [&values](std::size_t candidate) {
+    return values.solver_errors.empty() ? 0 : values.solver_errors[candidate];
+  };
+  for (std::size_t i = 0; i < draws.candidates.size(); ++i) {
+    out.of.push_back(comparison(
+        out.drawn.values[i], out.drawn.values[0], values.values[best[i]],
+        solver_error(best[i]) + solver_error(best[0]), request.objective().wants_most() ? -1 : 1,
+        out.drawn.draws, request.confidence() == 0 ? kDefaultConfidence : request.confidence()));
   }
-  out.of = comparisons_of(compared, table.figures().front(),
-                          request.objective().wants_most() ? -1 : 1, out.parameters, effects,
-                          request.confidence() == 0 ? kDefaultConfidence : request.confidence());
   return out;
 }
 
@@ -128,17 +102,33 @@ Outcome<v1::RankCandidatesResponse> rank_candidates(Application& application,
   const CandidateValues& figure = table.figures().front();
   std::vector<std::size_t> best =
       ordered(selection.candidates, figure.values, request.objective().wants_most());
+  const std::vector<std::uint32_t> warning_bits = table.warning_bits();
+  const auto withheld = std::stable_partition(best.begin(), best.end(), [&](std::size_t each) {
+    return !DecisionTable::is_withheld(warning_bits[each]);
+  });
+  const auto withheld_count = static_cast<int>(best.end() - withheld);
+  std::vector<std::size_t> decided(best.begin(), withheld);
   best.resize(std::min(best.size(), static_cast<std::size_t>(
                                         request.count() == 0 ? kDefaultCount : request.count())));
+  decided.resize(std::min(decided.size(), best.size()));
   try {
-    const Comparisons comparisons = compare_best(application, request, best, table, call);
+    const Comparisons comparisons = compare_best(application, request, decided, table, call);
     v1::RankCandidatesResponse out;
+    out.set_withheld(withheld_count);
+    out.set_draws(comparisons.drawn.draws);
+    if (!table.is_of_rig()) out.set_not_included(kToothContactOnly);
+    add_warnings(warning_bits, best, *out.mutable_warnings());
+    for (v1::RefusedCandidate& each : table.refused_candidates(kMostRefused)) {
+      *out.add_refused_candidates() = std::move(each);
+    }
     out.set_ranked(static_cast<int>(selection.candidates.size()));
     set_numbers(selection, out);
     out.set_compared(static_cast<int>(comparisons.of.size()));
-    for (const UncertainParameter& each : comparisons.parameters) {
-      (each.is_shared ? out.add_shared_uncertain_parameters() : out.add_own_uncertain_parameters())
-          ->assign(each.path);
+    for (const std::string& each : comparisons.drawn.own_inputs) {
+      out.add_own_uncertain_parameters(each);
+    }
+    for (const std::string& each : comparisons.drawn.shared_inputs) {
+      out.add_shared_uncertain_parameters(each);
     }
     for (std::size_t i = 0; i < best.size(); ++i) {
       v1::RankedCandidate& each = *out.add_candidates();
@@ -149,6 +139,7 @@ Outcome<v1::RankCandidatesResponse> rank_candidates(Application& application,
       for (std::size_t k = 1; k < table.figures().size(); ++k) {
         each.add_constraint_values(table.figures()[k].values[best[i]]);
       }
+      each.set_verdict_withheld(i >= decided.size());
       if (i < comparisons.of.size() && comparisons.of[i]) {
         *each.mutable_comparison() = *comparisons.of[i];
       }

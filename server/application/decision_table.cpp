@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "core/study/warning_kinds.h"
 #include "server/application/campaigns.h"
 #include "server/contract/constraints.h"
 #include "server/contract/resource_names.h"
+#include "server/mapping/from_core.h"
 #include "server/simulation/campaign_columns.h"
 
 namespace tribodyn::server {
@@ -100,6 +103,72 @@ CandidateSelection DecisionTable::read_all(
   for (FigureSource& each : others_) add_missing(each.stored, missing);
   for (const FoundFigure& each : found_) figures_.push_back(read(each));
   return select_candidates(missing, figures_, constraints);
+}
+
+std::vector<std::uint32_t> DecisionTable::warning_bits() {
+  const int column = own_.columns.find(std::string(kWarningBits))->number;
+  const StoredCampaign& stored = own_.stored;
+  std::vector<std::uint32_t> out;
+  visit_blocks(stored, [&](std::int64_t first, std::int64_t count) {
+    const std::vector<double> bits = rows(stored, column, first, count);
+    for (auto at = bits.begin(); at != bits.end(); at += stored.conditions) {
+      std::uint32_t all = 0;
+      for (auto row = at; row != at + stored.conditions; ++row) {
+        if (std::isfinite(*row)) all |= static_cast<std::uint32_t>(*row);
+      }
+      out.push_back(all);
+    }
+  });
+  return out;
+}
+
+bool DecisionTable::is_withheld(std::uint32_t warning_bits) {
+  for (std::size_t n = 0; n < warning_kinds().size() && warning_bits >> n != 0; ++n) {
+    if ((warning_bits >> n & 1) != 0 && withholds_verdict(warning_kinds()[n].code)) return true;
+  }
+  return false;
+}
+
+std::vector<v1::RefusedCandidate> DecisionTable::refused_candidates(int most) {
+  const StoredCampaign& stored = own_.stored;
+  const std::vector<CampaignRefusal> refusals =
+      application_.store.campaign_refusals(stored.id, call_.limits);
+  std::vector<v1::RefusedCandidate> out;
+  visit_blocks(stored, [&](std::int64_t first, std::int64_t count) {
+    const std::vector<double> numbers = rows(stored, kRefusalNumber, first, count);
+    auto candidate = static_cast<std::size_t>(first);
+    for (auto at = numbers.begin(); at != numbers.end(); at += stored.conditions, ++candidate) {
+      const auto refused = std::find_if(at, at + stored.conditions, [](double n) { return n > 0; });
+      if (refused == at + stored.conditions || static_cast<int>(out.size()) == most) continue;
+      v1::RefusedCandidate& added = out.emplace_back();
+      added.set_candidate(static_cast<int>(candidate));
+      added.set_label(label(candidate));
+      for (const CampaignRefusal& each : refusals) {
+        if (each.number != static_cast<int>(*refused)) continue;
+        added.mutable_refusal()->set_reason(each.reason);
+        added.mutable_refusal()->set_message(each.message);
+      }
+    }
+  });
+  return out;
+}
+
+void add_warnings(const std::vector<std::uint32_t>& bits,
+                  const std::vector<std::size_t>& candidates,
+                  google::protobuf::RepeatedPtrField<v1::CandidateWarning>& out) {
+  constexpr int kMostNamed = 1000;
+  for (std::size_t n = 0; n < warning_kinds().size() && n < 32; ++n) {
+    v1::CandidateWarning warning;
+    for (const std::size_t each : candidates) {
+      if ((bits[each] >> n & 1) != 0 && warning.candidates_size() < kMostNamed) {
+        warning.add_candidates(static_cast<int>(each));
+      }
+    }
+    if (warning.candidates().empty()) continue;
+    warning.set_code(std::string(warning_kinds()[n].code));
+    set_kind(warning);
+    *out.Add() = std::move(warning);
+  }
 }
 
 const google::protobuf::RepeatedPtrField<std::string>* DecisionTable::texts(

@@ -64,6 +64,14 @@ class DecisionTable {
     return {figure.aggregate, figure.source->weights};
   }
   TableColumns& columns() { return own_.columns; }
+  bool is_of_rig() const { return own_.columns.request().has_rig(); }
+
+  /// Returns the warnings of each candidate: bits of the column kWarningBits, of all of its rows.
+  std::vector<std::uint32_t> warning_bits();
+  /// Returns which candidates have a row whose verdict a warning withholds.
+  static bool is_withheld(std::uint32_t warning_bits);
+  /// Returns candidates that have a refused row, with the reason of the first, at most `most`.
+  std::vector<v1::RefusedCandidate> refused_candidates(int most);
 
   /// Returns the texts of an attribute; null if it has none or does not exist.
   const google::protobuf::RepeatedPtrField<std::string>* texts(const std::string& attribute);
@@ -91,6 +99,11 @@ class DecisionTable {
 /// Returns candidates by a figure, the best first, equal ones in their order.
 std::vector<std::size_t> ordered(std::vector<std::size_t> candidates,
                                  const std::vector<double>& values, bool wants_most);
+
+/// Adds the warnings of candidates, one for each code. `bits`: as DecisionTable::warning_bits().
+void add_warnings(const std::vector<std::uint32_t>& bits,
+                  const std::vector<std::size_t>& candidates,
+                  google::protobuf::RepeatedPtrField<v1::CandidateWarning>& out);
 
 /// Sets how many candidates a decision does not take.
 template <class Response>

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "core/decisions/pareto_front.h"
+#include "core/study/warning_kinds.h"
 #include "server/application/campaign_decisions.h"
 #include "server/application/campaigns.h"
 #include "server/application/decision_table.h"
@@ -49,6 +50,7 @@ Outcome<v1::FindParetoCandidatesResponse> find_pareto_candidates(
     each.set_second_value(second[candidate]);
   };
   std::set<std::size_t> members;
+  if (!table.is_of_rig()) out.set_not_included(kToothContactOnly);
   for (const std::size_t position : front) {
     const std::size_t candidate = selection.candidates[position];
     members.insert(candidate);
@@ -56,6 +58,7 @@ Outcome<v1::FindParetoCandidatesResponse> find_pareto_candidates(
       set_candidate(candidate, *out.add_candidates());
     }
   }
+  add_warnings(table.warning_bits(), {members.begin(), members.end()}, *out.mutable_warnings());
   if (request.beaten_count() == 0) return out;
   for (const std::size_t candidate :
        ordered(selection.candidates, first, request.first().wants_most())) {

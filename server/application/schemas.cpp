@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/study/warning_kinds.h"
 #include "core/version.h"
 #include "server/application/errors.h"
 #include "server/application/list_filter.h"
@@ -71,10 +72,13 @@ void add_vocabularies(v1::Schema& out) {
         v1::Provenance_descriptor(), v1::FlankMember_descriptor(),
         v1::ProfileDirection_descriptor(), v1::Levelling_descriptor(), v1::PointModel_descriptor(),
         v1::PointStart_descriptor(), v1::SweepDirection_descriptor(),
-        v1::Simulation::State_descriptor(),
-        v1::ModelOptions::PressureViscosityIndex_descriptor()}) {
+        v1::Simulation::State_descriptor(), v1::ModelOptions::PressureViscosityIndex_descriptor(),
+        v1::ModelOptions::Preset_descriptor()}) {
     add_enum(*each, out);
   }
+  std::vector<std::string> codes;
+  for (const WarningKind& each : warning_kinds()) codes.emplace_back(each.code);
+  add_words("RangeWarning.code", codes, out);
 }
 
 void add_column(const std::string& table, const std::string& name, const std::string& description,

@@ -24,6 +24,7 @@
 #include "server/simulation/input_hash.h"
 #include "server/simulation/result_key.h"
 #include "server/simulation/simulation_inputs.h"
+#include "server/simulation/study_checks.h"
 #include "server/storage/checksum.h"
 #include "server/storage/resource_lookup.h"
 #include "server/support/sha256.h"
@@ -239,7 +240,11 @@ Outcome<v1::Simulation> create_simulation(Application& application,
                                 resource_lookup(application.store, call.project, call.limits),
                                 "simulation", violations);
   application.jobs.metrics().observe(Phase::kValidation, watch.seconds());
-  if (!inputs) {
+  if (inputs) {
+    check_pour_point(*inputs->lubricant, inputs->effective.sump_temperature_celsius(),
+                     "simulation.lubricant", violations);
+  }
+  if (!violations.empty()) {
     application.jobs.metrics().count(Submission::kInvalid);
     return invalid(violations);
   }

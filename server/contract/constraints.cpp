@@ -38,6 +38,11 @@ constexpr Constraint kTable[] = {
     {"Lubricant", "density_at_zero_kelvin_kilograms_per_cubic_metre", "kg/m3", 100, 1e5, "eq 26"},
     {"Lubricant", "density_slope_kilograms_per_cubic_metre_kelvin", "kg/(m3 K)", -100, 100,
      "eq 26"},
+    {"Lubricant EvaluateContactRequest Surface", "tribofilm_shear_strength_pascals", "Pa", 0, 1e9,
+     "eq 40, tau_0"},
+    {"Lubricant EvaluateContactRequest Surface BoundaryFrictionAtTemperature",
+     "asperity_friction_coefficient", "", 0, 2, "eq 40, zeta"},
+    {"BoundaryFrictionAtTemperature", "temperature_celsius", "C", -70, 500, "eq 40"},
     {"Lubricant", "flash_point_celsius", "C", 0, 600, "ASTM D92"},
     {"Lubricant", "pour_point_celsius", "C", -120, 100, "ASTM D97"},
     {"ImprovedYasutomi", "glass_viscosity_pascal_seconds", "Pa s", 1e9, 1e16,
@@ -75,9 +80,6 @@ constexpr Constraint kTable[] = {
     {"Surface EvaluateContactRequest", "asperity_radius_metres", "m", 1e-9, 1, "eq 41, beta_G"},
     {"Surface EvaluateContactRequest", "composite_rms_height_metres", "m", 1e-10, 1e-2,
      "eq 41, sigma_G", "the film ratio divides by it"},
-    {"Surface EvaluateContactRequest", "tribofilm_shear_strength_pascals", "Pa", 0, 1e10,
-     "eq 40, tau_0"},
-    {"Surface EvaluateContactRequest", "asperity_friction_coefficient", "", 0, 10, "eq 40, zeta"},
     {"SurfaceMeasurement", "samples", "", 5, 1000000, "eq 45"},
     {"SurfaceMeasurement", "spacing_metres", "m", 1e-10, 1e-2, "eq 45"},
     {"SurfaceMeasurement ImportSurfaceProfilesRequest EvaluateProfilesRequest",
@@ -318,9 +320,9 @@ bool is_required(const Constraint& row) {
       row.message == "DrivelineDynamics";
 #undef TRIBODYN_IS_OF
   if (!has_parameters) return false;
-  return !is_documentary(*google::protobuf::DescriptorPool::generated_pool()
-                              ->FindMessageTypeByName("tribodyn.v1." + std::string(row.message))
-                              ->FindFieldByName(std::string(row.field)));
+  return !may_be_unset(*google::protobuf::DescriptorPool::generated_pool()
+                            ->FindMessageTypeByName("tribodyn.v1." + std::string(row.message))
+                            ->FindFieldByName(std::string(row.field)));
 }
 
 const Constraint* find_constraint(std::string_view message, std::string_view field) {

@@ -40,6 +40,15 @@ EditDistances edit_distances(std::string_view a, std::string_view b) {
 /// Returns the part after "lubricants/". Names are compared without their collection.
 std::string_view id_of(std::string_view name) { return name.substr(name.find('/') + 1); }
 
+/// Whether a text is a name in a project or in a collection, e.g. "surfaces/run-in".
+bool is_in_collection(std::string_view text) {
+  constexpr std::string_view kCollections[] = {kProjects, kLubricants,  kGearSets, kSurfaces,
+                                               kVehicles, kSimulations, kCampaigns};
+  const std::string_view first = text.substr(0, text.find('/'));
+  return first.size() < text.size() && std::find(std::begin(kCollections), std::end(kCollections),
+                                                 first) != std::end(kCollections);
+}
+
 /// Returns the number in "collection/{id}", or nullopt if `name` has another form.
 std::optional<std::int64_t> number_in(std::string_view name, std::string_view collection) {
   if (!is_resource_name(name, collection)) return std::nullopt;
@@ -104,6 +113,7 @@ bool is_resource_name(std::string_view name, std::string_view collection) {
 
 std::string allowed_id(std::string_view text) {
   std::string out;
+  if (is_in_collection(text)) return out;
   for (const char c : text.substr(0, kMaximumTextLength)) {
     if (is_id_character(c)) {
       out += c;
@@ -154,7 +164,9 @@ std::string campaign_name(std::string_view project, std::int64_t number) {
 std::string nearest_name(std::string_view name, const std::vector<std::string>& existing) {
   const std::string_view compared = id_of(name).substr(0, kMaximumTextLength);
   if (compared.empty()) return {};
-  const std::size_t largest_distance = std::max<std::size_t>(2, compared.size() / 3);
+  // At most half of the letters: any two short names are near each other.
+  const std::size_t largest_distance =
+      std::min(std::max<std::size_t>(2, compared.size() / 3), compared.size() / 2);
   // 0 below four letters: a prefix of any name is near a short text
   const std::size_t largest_prefix_distance = compared.size() / 4;
   std::string nearest;
@@ -179,11 +191,18 @@ std::string meant_text(std::string_view name, const std::vector<std::string>& kn
 
 std::string unknown_name_text(std::string_view name, std::string_view collection,
                               const std::vector<std::string>& existing) {
-  const std::string nearest = nearest_name(name, existing);
-  const std::string hint = nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest);
-  if (parse_revision_name(name, collection)) {
-    return fmt::format("\"{}\" does not exist{}", plain_excerpt(name), hint);
-  }
+  const bool is_name = parse_revision_name(name, collection).has_value();
+  const std::string own = std::string(collection) + "/";
+  const std::string_view head = name.substr(0, name.find('/'));
+  // "lubricant/x", but not "75W/90": a misspelt collection.
+  const bool has_head = head.size() < name.size() &&
+                        edit_distances(head, collection).to_whole <= collection.size() / 3;
+  const std::string nearest =
+      nearest_name(own + allowed_id(has_head ? name.substr(head.size() + 1) : name), existing);
+  std::string hint = nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest);
+  if (is_name) return fmt::format("\"{}\" does not exist{}", plain_excerpt(name), hint);
+  const std::string id = allowed_id(name);
+  if (hint.empty() && !id.empty()) hint = fmt::format("; \"{}{}\" is one", own, id);
   return fmt::format("\"{}\" is not a name of the form \"{}/{{id}}\"{}", plain_excerpt(name),
                      collection, hint);
 }

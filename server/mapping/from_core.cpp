@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "core/study/warning_kinds.h"
 #include "core/version.h"
 #include "server/support/value_of.h"
 
@@ -110,6 +112,11 @@ constexpr std::pair<LimitedFigure, const char*> kLimitedFigureNames[] = {
     {LimitedFigure::kContactTemperatureMaximum, "contact_temperature_kelvin.maximum"},
     {LimitedFigure::kFlashTemperatureMaximum, "flash_temperature_rise_kelvin.maximum"}};
 
+constexpr std::pair<WarningKind::Level, v1::WarningLevel> kWarningLevels[] = {
+    {WarningKind::Level::kNote, v1::WARNING_LEVEL_NOTE},
+    {WarningKind::Level::kCaution, v1::WARNING_LEVEL_CAUTION},
+    {WarningKind::Level::kWithholdsVerdict, v1::WARNING_LEVEL_WITHHOLDS_VERDICT}};
+
 void set(v1::PointSensitivities* out, const PointSensitivities& sensitivities) {
   for (int f = 0; f < kOrbitFigures; ++f) {
     out->add_figures(value_of(kOrbitFigureNames, static_cast<OrbitFigure>(f), ""));
@@ -153,13 +160,30 @@ void set_solver(v1::PointResult* out, const PointResult& result) {
 
 }  // namespace
 
+template <class Warning>
+void set_kind(Warning& warning) {
+  const int number = warning_number(warning.code());
+  warning.set_level(v1::WARNING_LEVEL_NOTE);
+  if (number < 0) return;
+  const WarningKind& kind = warning_kinds()[static_cast<std::size_t>(number)];
+  warning.set_summary(std::string(kind.summary));
+  warning.set_level(value_of(kWarningLevels, kind.level, v1::WARNING_LEVEL_NOTE));
+}
+template void set_kind(v1::RangeWarning&);
+template void set_kind(v1::PointWarning&);
+template void set_kind(v1::CandidateWarning&);
+
+v1::RangeWarning to_message(const RangeWarning& warning) {
+  v1::RangeWarning out;
+  out.set_code(warning.code);
+  out.set_message(warning.sentence);
+  set_kind(out);
+  return out;
+}
+
 void add_warnings(const std::vector<RangeWarning>& warnings,
                   google::protobuf::RepeatedPtrField<v1::RangeWarning>* out) {
-  for (const RangeWarning& warning : warnings) {
-    v1::RangeWarning* added = out->Add();
-    added->set_code(warning.code);
-    added->set_message(warning.sentence);
-  }
+  for (const RangeWarning& warning : warnings) *out->Add() = to_message(warning);
 }
 
 v1::EvaluateContactResponse to_message(const ContactSolution& s) {
@@ -251,6 +275,7 @@ v1::PointResult to_message(const PointResult& result, int maximum_contact_losses
   set(out.mutable_gear_specific_sliding(), result.gear_specific_sliding);
   out.set_limiting_stress_time_share(result.limiting_stress_time_share);
   out.set_limiting_stress_area_share(result.limiting_stress_area_share);
+  out.set_inlet_heating_factor(result.inlet_heating_factor);
   set_solver(&out, result);
   if (result.sensitivities) set(out.mutable_sensitivities(), *result.sensitivities);
   return out;

@@ -4,13 +4,21 @@
 #include "core/study/figure_limits.h"
 #include "core/study/operating_point.h"
 #include "core/study/speed_sweep.h"
+#include "tribodyn/v1/campaigns.pb.h"
 #include "tribodyn/v1/contacts.pb.h"
+#include "tribodyn/v1/points.pb.h"
 #include "tribodyn/v1/results.pb.h"
 
 namespace tribodyn::server {
 
 /// Converts every field of a solved contact and adds the model version.
 v1::EvaluateContactResponse to_message(const ContactSolution& solution);
+
+/// Sets level and summary of a warning by its code.
+template <class Warning>  // v1::RangeWarning, v1::PointWarning or v1::CandidateWarning
+void set_kind(Warning& warning);
+
+v1::RangeWarning to_message(const RangeWarning& warning);
 
 /// Converts warnings and adds them.
 void add_warnings(const std::vector<RangeWarning>& warnings,

@@ -93,6 +93,21 @@ Lubricant to_core(const v1::Lubricant& message) {
           .law_parameters = law_parameters_of(message)};
 }
 
+LubricantBoundary lubricant_boundary(const v1::Lubricant& message) {
+  LubricantBoundary out;
+  if (message.has_tribofilm_shear_strength_pascals()) {
+    out.tribofilm_shear_strength = message.tribofilm_shear_strength_pascals();
+  }
+  if (message.has_asperity_friction_coefficient()) {
+    out.asperity_friction_coefficient = message.asperity_friction_coefficient();
+  }
+  for (const v1::BoundaryFrictionAtTemperature& each : message.asperity_friction_by_temperature()) {
+    out.coefficient_by_temperature.emplace_back(each.temperature_celsius() + kZeroCelsius,
+                                                each.asperity_friction_coefficient());
+  }
+  return out;
+}
+
 template <class Message>
 Roughness roughness(const Message& message) {
   return {.asperity_density = message.asperity_density_per_square_metre(),
@@ -134,6 +149,8 @@ Vehicle to_core(const v1::Vehicle& message) {
 
 ModelOptions to_core(const v1::ModelOptions& message) {
   const v1::AsPublished& published = message.as_published();
+  const ModelOptions preset =
+      message.preset() == v1::ModelOptions::PAPER ? ModelOptions{} : recommended_model();
   return {
       .isothermal = message.isothermal(),
       .newtonian = message.newtonian(),
@@ -144,7 +161,10 @@ ModelOptions to_core(const v1::ModelOptions& message) {
       .subtract_contact_point_motion = message.subtract_contact_point_motion(),
       .load_dependent_mesh_data = message.load_dependent_mesh_data(),
       .tabulated_friction_arms = message.tabulated_friction_arms(),
-      .inlet_shear_heating = message.inlet_shear_heating(),
+      .inlet_shear_heating = message.has_inlet_shear_heating() ? message.inlet_shear_heating()
+                                                               : preset.inlet_shear_heating,
+      .closed_load_sharing = message.has_closed_load_sharing() ? message.closed_load_sharing()
+                                                               : preset.closed_load_sharing,
       .pressure_viscosity_index =
           message.pressure_viscosity_index() == v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_HOUPERT
               ? PressureViscosityIndex::kHoupert

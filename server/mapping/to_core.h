@@ -21,6 +21,14 @@ namespace tribodyn::server {
 // These functions convert messages to core values field by field. They check nothing: see
 // check_message.h.
 Lubricant to_core(const v1::Lubricant& message);
+LubricantBoundary lubricant_boundary(const v1::Lubricant& message);
+
+/// Makes the lubricant that of a scene: core's Scene or RigScene.
+template <class AnyScene>
+void set_lubricant(const v1::Lubricant& message, AnyScene& scene) {
+  scene.lubricant = to_core(message);
+  scene.lubricant_boundary = lubricant_boundary(message);
+}
 
 // The fields of these have the same names in resources and in an explicit contact.
 template <class Message>  // v1::Surface or v1::EvaluateContactRequest

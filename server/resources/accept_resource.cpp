@@ -151,6 +151,22 @@ void check_measurements(const v1::LubricantMeasurements& measurements, const std
   }
 }
 
+void check_boundary_friction(const v1::Lubricant& lubricant, const std::string& path,
+                             Violations& violations) {
+  const auto& table = lubricant.asperity_friction_by_temperature();
+  const std::string at = join_path(path, "asperity_friction_by_temperature");
+  if (table.empty()) return;
+  if (lubricant.has_asperity_friction_coefficient()) {
+    violations.add(at, "set beside asperity_friction_coefficient; allowed: one of the two");
+  }
+  for (int i = 1; i < table.size(); ++i) {
+    if (table[i].temperature_celsius() > table[i - 1].temperature_celsius()) continue;
+    violations.add(fmt::format("{}[{}].temperature_celsius", at, i),
+                   "{} C after {} C; allowed: rising temperatures", table[i].temperature_celsius(),
+                   table[i - 1].temperature_celsius());
+  }
+}
+
 /// Removes the provenance of computed parameters that the client changed: their values are now the
 /// client's.
 void unmark_changed_parameters(v1::Lubricant& lubricant, const v1::Lubricant& present) {
@@ -256,6 +272,7 @@ std::optional<v1::Lubricant> accept_kind(const v1::Lubricant& stated, const v1::
     clear_computed_parameters(out);
   }
   check_law_of_pressure(out, path, violations);
+  check_boundary_friction(out, path, violations);
   if (out.has_improved_yasutomi()) {  // without all of its parameters the law determines nothing
     check_message(out.improved_yasutomi(), join_path(path, "improved_yasutomi"), violations);
   }

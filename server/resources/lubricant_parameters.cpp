@@ -10,6 +10,7 @@
 #include "core/lubricant/viscosity.h"
 #include "core/lubricant/viscosity_index.h"
 #include "core/refusal.h"
+#include "server/mapping/from_core.h"
 #include "server/mapping/to_core.h"
 #include "server/resources/provenance.h"
 #include "server/resources/viscosity_fit.h"
@@ -316,10 +317,7 @@ void add_figures(const CharacterisedFluid& fluid, v1::LubricantCharacterisation&
 }
 
 v1::RangeWarning range_warning(const std::string& code, const std::string& sentence) {
-  v1::RangeWarning out;
-  out.set_code(code);
-  out.set_message(sentence);
-  return out;
+  return to_message(RangeWarning{code, sentence});
 }
 
 std::vector<v1::RangeWarning> make_fluid_warnings(const v1::Lubricant& lubricant) {

@@ -26,7 +26,10 @@ bool is_block(const FieldDescriptor& field) {
 
 bool has_tables(const Descriptor& resource) {
   for (int i = 0; i < resource.field_count(); ++i) {
-    if (is_block(*resource.field(i)) && resource.field(i)->is_repeated()) return true;
+    if (is_block(*resource.field(i)) && resource.field(i)->is_repeated() &&
+        !may_be_unset(*resource.field(i))) {
+      return true;
+    }
   }
   return false;
 }
@@ -135,7 +138,11 @@ void complete_provenance(const google::protobuf::Message& resource, Provenances&
     }
   }
   for (const std::string& number : paths.numbers) {
-    if (number.find('.') == std::string::npos) needed.push_back(number);
+    const auto* field = resource.GetDescriptor()->FindFieldByName(number);  // null: in a block
+    if (field == nullptr) continue;
+    const bool is_set =
+        !field->has_presence() || resource.GetReflection()->HasField(resource, field);
+    if (is_set) needed.push_back(number);
   }
   for (const std::string& field : needed) {
     if (find_provenance(all, field) != nullptr) continue;

@@ -51,6 +51,7 @@ void add_numbers(Assumptions& out, const std::string& resource, const Provenance
     const FieldDescriptor& field = *descriptor.field(i);
     const Constraint* row = find_constraint(descriptor.name(), field.name());
     if (field.is_repeated() || row == nullptr || input_role(field) != InputRole::kInput) continue;
+    if (field.has_presence() && !reflection.HasField(message, &field)) continue;
     const double value = field.cpp_type() == FieldDescriptor::CPPTYPE_INT32
                              ? reflection.GetInt32(message, &field)
                              : reflection.GetDouble(message, &field);

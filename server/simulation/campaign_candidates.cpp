@@ -13,6 +13,7 @@
 #include "core/decisions/design.h"
 #include "core/uncertainty/drawn_value.h"
 #include "core/uncertainty/normal_draws.h"
+#include "proto/field_behavior.h"
 #include "server/contract/check_message.h"
 #include "server/contract/constraints.h"
 #include "server/resources/provenance.h"
@@ -278,7 +279,8 @@ void make_design(v1::Campaign& request, const ResourceLookup& lookup, Violations
   set_columns(shares_of(design, count, factors), factors, request, violations);
 }
 
-/// Returns the lubricant parameters that count under the law of the base.
+/// Returns the lubricant parameters that count under the law of the base and that every lubricant
+/// has.
 std::vector<std::pair<std::string, const FieldDescriptor*>> parameters_of(
     const v1::Lubricant& base) {
   std::vector<std::pair<std::string, const FieldDescriptor*>> out;
@@ -287,6 +289,7 @@ std::vector<std::pair<std::string, const FieldDescriptor*>> parameters_of(
     const bool is_of_law = path.starts_with("lubricant.improved_yasutomi.");
     const bool is_of_roelands = path.starts_with("lubricant.pressure_viscosity_");
     if (base.has_improved_yasutomi() ? is_of_roelands : is_of_law) continue;
+    if (may_be_unset(*find_candidate_parameter(path))) continue;
     out.emplace_back(path, find_candidate_parameter(path));
   }
   return out;

@@ -1,8 +1,10 @@
 #include "server/simulation/campaign_columns.h"
 
+#include <cstdint>
 #include <limits>
 #include <utility>
 
+#include "core/study/warning_kinds.h"
 #include "server/mapping/from_core.h"
 
 namespace tribodyn::server {
@@ -10,6 +12,19 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr char kUsualAxleFigure[] = "inefficiency_energy_mean_percent";
+
+/// Warnings beyond this number have no bit: they are of inputs, and of no row.
+constexpr int kBits = 32;
+
+void append_warnings(const std::vector<RangeWarning>& warnings, std::vector<double>& out) {
+  std::uint32_t bits = 0;
+  for (const RangeWarning& each : warnings) {
+    const int number = warning_number(each.code);
+    if (number >= 0 && number < kBits) bits |= std::uint32_t{1} << number;
+  }
+  out.push_back(bits);
+  out.push_back(any_withholds_verdict(warnings) ? 1 : 0);
+}
 
 void append_axle_figures(const PointFigures& figures, std::vector<double>& out) {
   out.insert(
@@ -20,6 +35,7 @@ void append_axle_figures(const PointFigures& figures, std::vector<double>& out) 
        figures.settled ? 1.0 : 0.0, static_cast<double>(figures.period_in_mesh_cycles),
        figures.estimated_relative_error.value_or(kNone),
        static_cast<double>(to_message(figures.model)), responses_coexist(figures) ? 1.0 : 0.0});
+  append_warnings(figures.warnings, out);
 }
 
 void append_axle_contact(const PointFigures& figures, std::vector<double>& out) {
@@ -39,7 +55,8 @@ void append_axle_contact(const PointFigures& figures, std::vector<double>& out) 
 
 std::vector<std::string> campaign_columns(const v1::Campaign& campaign) {
   if (campaign.has_rig()) {
-    std::vector<std::string> of_rig{std::string(kCampaignColumns.front())};
+    std::vector<std::string> of_rig{std::string(kCampaignColumns.front()),
+                                    std::string(kWarningBits), std::string(kVerdictWithheld)};
     for (const RigColumn& each : rig_columns()) of_rig.emplace_back(each.name);
     return of_rig;
   }
@@ -76,10 +93,11 @@ void CampaignRow::set(const PointEvaluation& evaluation, const EvaluatedPoint& p
   figures.insert(figures.end(), point.elasticities.begin(), point.elasticities.end());
 }
 
-void CampaignRow::set(const RigPoint& point) {
+void CampaignRow::set(const RigPoint& point, const std::vector<RangeWarning>& warnings) {
   figures.clear();
   refusal_reason.clear();
   refusal_message.clear();
+  append_warnings(warnings, figures);
   for (const RigColumn& each : rig_columns()) figures.push_back(point.*each.figure);
 }
 

@@ -11,9 +11,14 @@
 
 namespace tribodyn::server {
 
+/// Columns of every campaign: the sum of 2^n over the warnings of the row, n their
+/// warning_number(), and whether one of them withholds the verdict.
+inline constexpr std::string_view kWarningBits = "warning_bits",
+                                  kVerdictWithheld = "verdict_withheld";
+
 /// The columns that every campaign of the axle has, by number. A number never changes its meaning:
 /// databases hold it. The names are those of EvaluatePointsResponse.
-inline constexpr std::array<std::string_view, 14> kCampaignColumns = {
+inline constexpr std::array<std::string_view, 16> kCampaignColumns = {
     "refusal_number",  // 0: the row has figures; n: refusal n
     "pinion_torque_newton_metres",
     "wheel_torque_newton_metres",
@@ -28,6 +33,8 @@ inline constexpr std::array<std::string_view, 14> kCampaignColumns = {
     "estimated_relative_error",
     "model",
     "responses_coexist",
+    kWarningBits,
+    kVerdictWithheld,
 };
 /// The columns that follow in a campaign with contact_figures.
 inline constexpr std::array<std::string_view, 9> kContactFigureColumns = {
@@ -45,7 +52,8 @@ inline constexpr double kNotComputed = -1;  ///< refusal_number of a row without
 
 /// Returns the names of the columns that the store keeps of a campaign, by number: those above, and
 /// with elasticities elasticities_one_sided and "elasticity.{figure}.{parameter}", by figure. Of a
-/// rig: refusal_number and rig_columns(), whose numbers databases hold too.
+/// rig: refusal_number, kWarningBits, kVerdictWithheld and rig_columns(), whose numbers databases
+/// hold too.
 std::vector<std::string> campaign_columns(const v1::Campaign& campaign);
 
 /// Returns the column that is the figure of a candidate if a request names none.
@@ -59,7 +67,7 @@ struct CampaignRow {
 
   /// Sets the figures of a point, or why it has none.
   void set(const PointEvaluation& evaluation, const EvaluatedPoint& point);
-  void set(const RigPoint& point);
+  void set(const RigPoint& point, const std::vector<RangeWarning>& warnings);
   void refuse(std::string reason, std::string message);
   /// Returns the value of a column but the first one; NaN if the row is refused.
   double value(int column) const;

@@ -143,6 +143,19 @@ void add_number(double value, Sha256& hash) {
   hash.add({reinterpret_cast<const char*>(&value), sizeof value});
 }
 
+/// Returns what a lubricant states of its boundary friction, which candidates have no columns of.
+std::string boundary_text(const v1::Lubricant& lubricant) {
+  v1::Lubricant out;
+  *out.mutable_asperity_friction_by_temperature() = lubricant.asperity_friction_by_temperature();
+  if (lubricant.has_asperity_friction_coefficient()) {
+    out.set_asperity_friction_coefficient(lubricant.asperity_friction_coefficient());
+  }
+  if (lubricant.has_tribofilm_shear_strength_pascals()) {
+    out.set_tribofilm_shear_strength_pascals(lubricant.tribofilm_shear_strength_pascals());
+  }
+  return out.SerializeAsString() + "\n";
+}
+
 /// The hash differs from that of any simulation: figures of screening are right within the same
 /// tolerance, not the same to the last bit.
 std::string hash_of(const CampaignInputs& inputs) {
@@ -164,6 +177,7 @@ std::string hash_of(const CampaignInputs& inputs) {
       }
     }
   }
+  for (const auto& lubricant : points.lubricants) hash.add(boundary_text(*lubricant));
   if (points.with_contact) hash.add("contact figures\n");
   for (const Elasticity& each : points.elasticities) {
     hash.add("elasticity of " + each.figure + " by " + each.parameter + "\n");
@@ -354,6 +368,13 @@ std::optional<CampaignInputs> check_campaign(v1::Campaign request, const Resourc
     violations.add(join_path(path, each.field), std::move(each.description));
   }
   if (!is_read || !found.empty()) return std::nullopt;
+  out.points.with_sentences = false;
+  for (const std::string& name : out.table.candidate_lubricants()) {
+    auto lubricant =
+        find_resource<v1::Lubricant>(lookup, name, kLubricants, "candidate_lubricants", violations);
+    if (!lubricant) return std::nullopt;
+    out.points.lubricants.push_back(std::move(lubricant->resource));
+  }
   out.columns = campaign_columns(out.requested).size();
   divide_groups(out.points);
   return out;

@@ -131,7 +131,7 @@ std::optional<RigPoints> read_rig_points(const v1::Campaign& campaign,
                    points.candidates, points.conditions,
                    static_cast<long>(points.candidates) * points.conditions, most);
   }
-  if (rig) check_law_columns(columns, *rig->lubricant, violations);
+  if (rig) check_columns_of_base(columns, *rig->lubricant, violations);
   if (!rig || violations.size() > before) return std::nullopt;
   points.base.lubricant = rig->lubricant;
   points.base.surface = rig->surface;
@@ -148,7 +148,9 @@ std::string canonical_rig(const v1::Campaign& campaign, const RigPoints& points)
   add(*points.rig.lubricant, "lubricant");
   text += text_of(fluid_grounds(*points.rig.lubricant));
   if (points.rig.surface) add(*points.rig.surface, "surface");
-  add(campaign.model_options(), "model_options");
+  v1::ModelOptions options = campaign.model_options();
+  fill_model_options(options);
+  add(options, "model_options");
   v1::CampaignRig rig = campaign.rig();
   const std::vector<v1::RigCondition> conditions = rig_conditions(campaign);
   *rig.mutable_conditions() = {conditions.begin(), conditions.end()};

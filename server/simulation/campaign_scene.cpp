@@ -5,6 +5,7 @@
 
 #include "core/refusal.h"
 #include "server/mapping/to_core.h"
+#include "server/simulation/fluid_grounds.h"
 #include "server/simulation/study_checks.h"
 
 namespace tribodyn::server {
@@ -18,6 +19,9 @@ class AxleScene final : public CampaignScene {
         evaluated_(static_cast<std::size_t>(points.conditions)) {}
 
   void set_candidate(int candidate) override { scene_.set_candidate(candidate); }
+  void set_inputs(const UncertainInputs& inputs) override {
+    scene_.set_resources(inputs.lubricant, inputs.surface);
+  }
   std::size_t groups() const override { return points_.groups.size(); }
 
   void evaluate(std::size_t group, const GearSetPointer& gear_set,
@@ -47,17 +51,20 @@ class AxleScene final : public CampaignScene {
 class CandidateRig final : public CampaignScene {
  public:
   CandidateRig(const CampaignInputs& inputs, std::function<bool()> goes_on)
-      : columns_(inputs.points.columns),
+      : points_(inputs.points),
         rig_(*inputs.rig),
         goes_on_(std::move(goes_on)),
         resources_{*rig_.rig.lubricant, rig_.rig.surface ? *rig_.rig.surface : v1::Surface()},
-        scene_(rig_.rig.scene) {}
+        scene_(rig_.rig.scene),
+        grounds_(fluid_grounds(*rig_.rig.lubricant)) {}
 
   void set_candidate(int candidate) override {
-    resources_.set(columns_, candidate);
-    scene_.lubricant = to_core(resources_.lubricant);
-    if (!rig_.rig.surface) return;
-    set_surface(resources_.surface, rig_.rig.composite_rms_height, scene_);
+    resources_.set(points_, candidate);
+    set_scene();
+  }
+  void set_inputs(const UncertainInputs& inputs) override {
+    resources_ = {inputs.lubricant, inputs.surface};
+    set_scene();
   }
 
   std::size_t groups() const override { return rig_.groups.size(); }
@@ -70,7 +77,9 @@ class CandidateRig final : public CampaignScene {
       if (!goes_on_()) throw Cancelled();
       CampaignRow& row = out[static_cast<std::size_t>(position)];
       try {
-        row.set(rig->at(condition));
+        const RigPoint point = rig->at(condition);
+        row.set(point,
+                rig_warnings(scene_, grounds_, group.supply_temperature_celsius, point, false));
       } catch (const Refusal& refusal) {
         row.refuse(refusal.reason(), refusal.what());
       }
@@ -91,9 +100,10 @@ class CandidateRig final : public CampaignScene {
       return std::nullopt;
     };
     const double celsius = group.supply_temperature_celsius;
-    Violations at_inlet;
-    check_fluid_at_inlet(resources_.lubricant, celsius, 0, "lubricant", at_inlet);
-    if (!at_inlet.empty()) return refuse("INVALID_AT_INLET", at_inlet.front().description);
+    if (const auto [reason, message] = refusal_at_inlet(resources_.lubricant, celsius, 0);
+        !reason.empty()) {
+      return refuse(reason, message);
+    }
     try {
       return Rig(scene_, celsius + kZeroCelsius);
     } catch (const Refusal& refusal) {
@@ -101,11 +111,19 @@ class CandidateRig final : public CampaignScene {
     }
   }
 
-  const std::vector<PointEvaluation::Column>& columns_;
+  void set_scene() {
+    set_lubricant(resources_.lubricant, scene_);
+    grounds_ = fluid_grounds(resources_.lubricant);
+    if (!rig_.rig.surface) return;
+    set_surface(resources_.surface, rig_.rig.composite_rms_height, scene_);
+  }
+
+  const PointEvaluation& points_;
   const RigPoints& rig_;
   const std::function<bool()> goes_on_;
   CandidateResources resources_;
   RigScene scene_;
+  FluidGrounds grounds_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "server/simulation/campaign_columns.h"
 #include "server/simulation/campaign_inputs.h"
+#include "server/simulation/input_errors.h"
 #include "server/simulation/prepared_gear_sets.h"
 
 namespace tribodyn::server {
@@ -24,6 +25,8 @@ class CampaignScene {
 
   /// Makes the scene that of a candidate, counted from 0.
   virtual void set_candidate(int candidate) = 0;
+  /// Makes it that of any lubricant and surface.
+  virtual void set_inputs(const UncertainInputs& inputs) = 0;
   /// Returns the number of groups of conditions.
   virtual std::size_t groups() const = 0;
   /// Computes the candidate at one group of conditions, and writes the rows to their positions in

@@ -6,13 +6,18 @@
 #include <cmath>
 #include <optional>
 #include <set>
+#include <span>
+#include <sstream>
 #include <utility>
 
 #include "core/uncertainty/drawn_value.h"
+#include "core/uncertainty/normal_draws.h"
 #include "server/contract/constraints.h"
 #include "server/resources/provenance.h"
 #include "server/simulation/campaign_columns.h"
 #include "server/simulation/campaign_scene.h"
+#include "server/simulation/input_deviations.h"
+#include "server/simulation/input_errors.h"
 
 namespace tribodyn::server {
 namespace {
@@ -115,10 +120,47 @@ void check_uncertainties(const v1::RankCandidatesRequest& request, Violations& v
   }
 }
 
-std::vector<UncertainParameter> uncertain_parameters(const v1::RankCandidatesRequest& request,
-                                                     const CampaignInputs& inputs) {
+namespace {
+
+constexpr std::uint64_t kSeed = 1;  // as of ComparePoints
+constexpr int kUsualDraws = 199;
+constexpr double kUsualCorrelation = 0.5;
+
+int draws_of(const v1::RankCandidatesRequest& request) {
+  return request.draws() == 0 ? kUsualDraws : request.draws();
+}
+
+/// Returns the error of one parameter.
+InputError parameter_error(const std::string& path, const FieldDescriptor& field, double value,
+                           double uncertainty, InputError::Sharing sharing) {
+  return {
+      path,
+      sharing,
+      "",
+      1,
+      [&field, value, uncertainty](std::span<const double> deviations, UncertainInputs& inputs) {
+        google::protobuf::Message* holder = &inputs.lubricant;
+        if (field.containing_type() == v1::Surface::descriptor()) holder = &inputs.surface;
+        if (field.containing_type() == v1::ImprovedYasutomi::descriptor()) {
+          holder = inputs.lubricant.mutable_improved_yasutomi();
+        }
+        holder->GetReflection()->SetDouble(
+            holder, &field, within_limits(field, drawn_value(value, uncertainty, deviations[0])));
+      },
+      uncertainty};
+}
+
+double stated_uncertainty(const v1::ParameterUncertainty& stated, double value) {
+  return stated.has_relative_uncertainty() ? stated.relative_uncertainty() * std::abs(value)
+                                           : stated.absolute_uncertainty();
+}
+
+/// Returns the errors of a candidate whose parameters are columns: those that the request states,
+/// those that an attribute states, and of parameters without a column those of the base.
+std::vector<InputError> errors_of_columns(const v1::RankCandidatesRequest& request,
+                                          const CampaignInputs& inputs, std::size_t candidate) {
   const SimulationInputs& base = inputs.points.base;
-  std::vector<UncertainParameter> out;
+  std::vector<InputError> out;
   for (const std::string& path : candidate_parameter_names()) {
     const FieldDescriptor* field = find_candidate_parameter(path);
     const PointEvaluation::Column* varied = find_varied(inputs.points, field);
@@ -126,82 +168,131 @@ std::vector<UncertainParameter> uncertain_parameters(const v1::RankCandidatesReq
     const v1::ParameterUncertainty* stated = find_stated(request, path);
     const std::optional<double> usual = base_value(*field, base);
     if (!usual && varied == nullptr) continue;
-    UncertainParameter parameter{path, field, varied == nullptr && attribute == nullptr, {}};
-    bool is_uncertain = false;
-    for (int i = 0; i < inputs.points.candidates; ++i) {
-      const double value = varied == nullptr ? *usual : varied->values[static_cast<std::size_t>(i)];
-      double uncertainty = attribute == nullptr ? 0 : std::max(0.0, attribute->values(i));
-      if (uncertainty == 0 && stated != nullptr) {
-        uncertainty = stated->has_relative_uncertainty()
-                          ? stated->relative_uncertainty() * std::abs(value)
-                          : stated->absolute_uncertainty();
-      } else if (uncertainty == 0 && varied == nullptr && !request.ignore_stated_uncertainties()) {
-        uncertainty = stated_by_base(path, *field, base);
-      }
-      parameter.uncertainties.push_back(uncertainty);
-      is_uncertain = is_uncertain || uncertainty > 0;
+    const double value = varied == nullptr ? *usual : varied->values[candidate];
+    double uncertainty = attribute == nullptr ? 0 : attribute->values(static_cast<int>(candidate));
+    if (!(uncertainty > 0) && stated != nullptr) {
+      uncertainty = stated_uncertainty(*stated, value);
+    } else if (!(uncertainty > 0) && varied == nullptr && !request.ignore_stated_uncertainties()) {
+      uncertainty = stated_by_base(path, *field, base);
     }
-    if (is_uncertain) out.push_back(std::move(parameter));
+    if (!(uncertainty > 0)) continue;
+    const bool is_shared = varied == nullptr && attribute == nullptr;
+    out.push_back(
+        parameter_error(path, *field, value, uncertainty,
+                        is_shared ? InputError::Sharing::kScene : InputError::Sharing::kOwn));
   }
   return out;
 }
 
-std::vector<std::vector<double>> EffectsStudy::compute(CampaignInputs inputs,
-                                                       PreparedGearSets& gear_sets,
-                                                       const std::function<bool()>& is_over) const {
-  PointEvaluation& points = inputs.points;
-  keep_column(column, points);
-  for (const UncertainParameter& each : parameters) {
-    if (find_varied(points, each.field) != nullptr) continue;
-    const double usual = *base_value(*each.field, points.base);
-    points.columns.push_back(
-        {each.field, std::vector<double>(static_cast<std::size_t>(points.candidates), usual)});
-  }
-  // Of each candidate a row with each parameter lower and one with it higher.
-  std::vector<PointEvaluation::Column> moved;
-  for (const PointEvaluation::Column& each : points.columns) {
-    std::vector<double>& values =
-        moved.emplace_back(PointEvaluation::Column{each.field, {}}).values;
-    for (const std::size_t candidate : candidates) {
-      const double value = each.values[candidate];
-      for (const UncertainParameter& parameter : parameters) {
-        for (const double deviation : {-1.0, 1.0}) {
-          const double uncertainty = parameter.uncertainties[candidate];
-          values.push_back(
-              parameter.field != each.field
-                  ? value
-                  : within_limits(*each.field, drawn_value(value, uncertainty, deviation)));
-        }
-      }
+/// Returns the errors of a candidate that is a lubricant: those of ComparePoints, but for what the
+/// request states.
+std::vector<InputError> errors_of_lubricant(const v1::RankCandidatesRequest& request,
+                                            const CampaignInputs& inputs, std::size_t candidate) {
+  const v1::Lubricant& lubricant = *inputs.points.lubricants[candidate];
+  SimulationInputs own = inputs.points.base;
+  own.lubricant = inputs.points.lubricants[candidate];
+  std::vector<InputError> out;
+  if (!request.ignore_stated_uncertainties()) {
+    out = lubricant_errors(lubricant).errors;
+    if (own.surface) {
+      for (InputError& each : surface_errors(*own.surface).errors) out.push_back(std::move(each));
     }
   }
-  points.columns = std::move(moved);
-  points.candidates = static_cast<int>(2 * candidates.size() * parameters.size());
+  for (const v1::ParameterUncertainty& stated : request.uncertainties()) {
+    const FieldDescriptor* field = find_candidate_parameter(stated.parameter());
+    const std::optional<double> value = base_value(*field, own);
+    if (!value) continue;
+    std::erase_if(out, [&stated](const InputError& each) {
+      return (" " + each.input + " ").find(" " + stated.parameter() + " ") != std::string::npos;
+    });
+    const bool is_surface = field->containing_type() == v1::Surface::descriptor();
+    out.push_back(
+        parameter_error(stated.parameter(), *field, *value, stated_uncertainty(stated, *value),
+                        is_surface ? InputError::Sharing::kScene : InputError::Sharing::kOwn));
+  }
+  return out;
+}
+
+void add_words(const std::string& words, std::set<std::string>& out) {
+  std::istringstream stream(words);
+  for (std::string word; stream >> word;) out.insert(word);
+}
+
+}  // namespace
+
+std::size_t CandidateDraws::points_of_each() const {
+  return (static_cast<std::size_t>(draws_of(request)) + 1) * aggregate.conditions();
+}
+
+DrawnCandidates CandidateDraws::compute(CampaignInputs inputs, PreparedGearSets& gear_sets,
+                                        const std::function<bool()>& is_over) const {
+  PointEvaluation& points = inputs.points;
+  keep_column(column, points);
+  DrawnCandidates out;
+  out.values.resize(candidates.size());
+  std::vector<std::vector<InputError>> errors;
+  std::vector<std::vector<std::vector<Mixture>>> mixtures;
+  Deviations deviations(request.has_estimate_correlation() ? request.estimate_correlation()
+                                                           : kUsualCorrelation);
+  for (const std::size_t candidate : candidates) {
+    const bool is_lubricant = !points.lubricants.empty();
+    errors.push_back(is_lubricant ? errors_of_lubricant(request, inputs, candidate)
+                                  : errors_of_columns(request, inputs, candidate));
+    const std::string owner = is_lubricant
+                                  ? inputs.table.candidate_lubricants(static_cast<int>(candidate))
+                                  : std::to_string(candidate);
+    auto& own = mixtures.emplace_back();
+    for (const InputError& each : errors.back()) {
+      own.push_back(deviations.of(each, owner));
+      add_words(each.input,
+                each.sharing == InputError::Sharing::kScene ? out.shared_inputs : out.own_inputs);
+    }
+  }
+  const auto& attributes = inputs.table.candidate_attributes();
+  const bool is_asked =
+      !request.uncertainties().empty() ||
+      std::any_of(attributes.begin(), attributes.end(), [&points](const auto& each) {
+        return points.lubricants.empty() && each.name().ends_with(".uncertainty");
+      });
+  if (out.own_inputs.empty() && !(is_asked && !out.shared_inputs.empty())) return out;
+  out.draws = draws_of(request);
+  const NormalDraws normal(out.draws, deviations.count(), kSeed);
 
   const auto scene = campaign_scene(inputs, [&is_over] { return !is_over(); });
   const auto gear_set = scene->take_gear_set(gear_sets);
   std::vector<CampaignRow> rows(static_cast<std::size_t>(points.conditions));
-  std::vector<double> values(rows.size());
-  std::vector<double> figures;
-  for (int i = 0; i < points.candidates; ++i) {
-    scene->set_candidate(i);
-    for (std::size_t group = 0; group < scene->groups(); ++group) {
-      scene->evaluate(group, gear_set, rows);
+  std::vector<double> figures(rows.size());
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const bool has_own = std::any_of(
+        errors[i].begin(), errors[i].end(),
+        [](const InputError& each) { return each.sharing != InputError::Sharing::kScene; });
+    if (!has_own && !is_asked) continue;
+    CandidateResources stated{*points.base.lubricant,
+                              points.base.surface ? *points.base.surface : v1::Surface()};
+    stated.set(points, static_cast<int>(candidates[i]));
+    UncertainInputs drawn;
+    drawn.lubricant = std::move(stated.lubricant);
+    drawn.surface = std::move(stated.surface);
+    for (int n = 0; n < out.draws; ++n) {
+      if (n > 0 && errors[i].empty()) {  // exact, among others that are not
+        out.values[i].push_back(out.values[i].front());
+        continue;
+      }
+      for (std::size_t k = 0; k < errors[i].size(); ++k) {
+        std::vector<double> deviation;
+        for (const Mixture& each : mixtures[i][k]) deviation.push_back(each.at(normal, n));
+        errors[i][k].apply(deviation, drawn);
+      }
+      scene->set_inputs(drawn);
+      for (std::size_t group = 0; group < scene->groups(); ++group) {
+        scene->evaluate(group, gear_set, rows);
+      }
+      for (std::size_t k = 0; k < rows.size(); ++k) figures[k] = rows[k].value(column);
+      out.values[i].push_back(aggregate.value(figures));
     }
-    for (std::size_t k = 0; k < rows.size(); ++k) values[k] = rows[k].value(column);
-    figures.push_back(aggregate.value(values));
   }
   // As in evaluate_points(), an exception drops the gear set.
   scene->give_back(gear_sets, gear_set);
-
-  std::vector<std::vector<double>> out;
-  auto figure = figures.begin();
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    std::vector<double>& effects = out.emplace_back();
-    for (std::size_t k = 0; k < parameters.size(); ++k, figure += 2) {
-      effects.push_back(0.5 * (*(figure + 1) - *figure));
-    }
-  }
   return out;
 }
 

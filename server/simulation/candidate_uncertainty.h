@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
-#include "core/decisions/ranking.h"
 #include "server/contract/violations.h"
 #include "server/simulation/campaign_inputs.h"
 #include "server/simulation/candidate_figures.h"
@@ -31,33 +31,32 @@ double stated_by_base(const std::string& path, const google::protobuf::FieldDesc
 /// Checks the names and values of stated uncertainties.
 void check_uncertainties(const v1::RankCandidatesRequest& request, Violations& violations);
 
-/// A parameter with a standard uncertainty.
-struct UncertainParameter {
-  std::string path;  ///< as in CandidateColumn
-  const google::protobuf::FieldDescriptor* field;
-  bool is_shared;                     ///< all candidates have its error in common
-  std::vector<double> uncertainties;  ///< by candidate of the campaign, in the unit of the field
+/// Largest number of points that comparisons take: some 2 s of a processor.
+inline constexpr std::size_t kMaximumComparisonPoints = 60'000;
+
+/// A figure of candidates under drawn inputs, which are those of ComparePoints where candidates are
+/// lubricants.
+struct DrawnCandidates {
+  int draws = 0;  ///< 0: no input has an uncertainty
+  /// By candidate and draw, in the unit of the figure; NaN where the model refuses a draw. Empty of
+  /// a candidate of which nobody stated an uncertainty, unless the request or the table states
+  /// some.
+  std::vector<std::vector<double>> values;
+  std::set<std::string> own_inputs, shared_inputs;  ///< that err
 };
 
-/// Returns the uncertain parameters, as RankCandidatesRequest describes them.
-std::vector<UncertainParameter> uncertain_parameters(const v1::RankCandidatesRequest& request,
-                                                     const CampaignInputs& inputs);
-
-/// Largest number of points that comparisons take. They take some 2 s of a processor.
-inline constexpr std::size_t kMaximumComparisonPoints = 20'000;
-
-/// Computes the effects of parameters on a figure: half its change from one standard uncertainty
-/// below the value to one above.
-struct EffectsStudy {
-  std::vector<UncertainParameter> parameters;
+/// Draws the inputs of candidates, as RankCandidatesRequest describes it.
+struct CandidateDraws {
+  const v1::RankCandidatesRequest& request;
   std::vector<std::size_t> candidates;
   int column;  ///< of the figure (campaign_columns.h)
   const ConditionAggregate& aggregate;
 
-  /// Returns the effects by candidate, in the order of `candidates`, then by parameter; NaN where
-  /// the model refuses one of the two. Throws Cancelled once `is_over` returns true.
-  std::vector<std::vector<double>> compute(CampaignInputs inputs, PreparedGearSets& gear_sets,
-                                           const std::function<bool()>& is_over) const;
+  /// Throws Cancelled once `is_over` returns true.
+  DrawnCandidates compute(CampaignInputs inputs, PreparedGearSets& gear_sets,
+                          const std::function<bool()>& is_over) const;
+  /// The number of points that each candidate takes.
+  std::size_t points_of_each() const;
 };
 
 }  // namespace tribodyn::server

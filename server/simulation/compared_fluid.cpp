@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/numerics/square.h"
+#include "core/study/warning_kinds.h"
 
 namespace tribodyn::server {
 
@@ -36,6 +37,14 @@ std::optional<StatedFigures> stated_figures(const EvaluatedPoint& point) {
       relative_error * std::max(std::abs(f.dte_minimum), std::abs(f.dte_maximum));
   std::fill(out.solver_error.begin() + kFilmRatio, out.solver_error.end(), kNoNumber);
   return out;
+}
+
+bool ComputedFluid::is_withheld(std::size_t condition) const {
+  const auto is_so = [](const EvaluatedPoint& point) {
+    return point.figures && any_withholds_verdict(point.figures->warnings);
+  };
+  return condition < points.size() ? is_so(points[condition])
+                                   : std::any_of(points.begin(), points.end(), is_so);
 }
 
 double ErrorSource::squared_effect(std::size_t condition, ComparedFigure figure) const {

@@ -63,6 +63,10 @@ struct ComputedFluid {
   std::vector<ValuesByCondition> drawn;  ///< by draw; empty if no input has an uncertainty
   std::vector<int> solved_draws;         ///< by condition
   std::vector<ErrorSource> sources;
+  bool is_uncertainty_stated = true;  ///< of one of its own parameters at least
+
+  /// Whether a warning of a condition withholds the verdict; of one of them for the mean.
+  bool is_withheld(std::size_t condition) const;
 };
 
 }  // namespace tribodyn::server

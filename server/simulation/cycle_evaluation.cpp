@@ -14,6 +14,8 @@
 
 #include "core/celsius.h"
 #include "core/refusal.h"
+#include "core/study/range_warnings.h"
+#include "core/study/warning_kinds.h"
 #include "core/version.h"
 #include "server/contract/check_message.h"
 #include "server/contract/constraints.h"
@@ -180,12 +182,13 @@ class FluidPoints {
     options_.progress = [&is_over](double) { return !is_over(); };
   }
 
-  /// The first warning of each code, with the number of the points that have it.
+  /// One warning of each code, about the point furthest outside, with the number of the points that
+  /// have it.
   std::vector<RangeWarning> warnings() const {
-    std::vector<RangeWarning> out;
-    for (const auto& [code, warning] : warnings_) {
-      out.push_back({code, fmt::format("at {} of {} points; first: {}", warning.points, points_,
-                                       warning.sentence)});
+    std::vector<RangeWarning> out = warnings_;
+    for (RangeWarning& each : out) {
+      each.sentence =
+          fmt::format("at {} of {} points: {}", counts_.at(each.code), points_, each.sentence);
     }
     return out;
   }
@@ -206,10 +209,9 @@ class FluidPoints {
         continue;
       }
       if (!points[i].figures) {
-        throw Refusal(
-            points[i].refusal_reason,
-            fmt::format("no steady state at {:.4g} km/h and {:.4g} N m at the ring gear: {}",
-                        3.6 * places[i][0], places[i][1], points[i].refusal_message));
+        throw Refusal(points[i].refusal_reason,
+                      fmt::format("at {:.4g} km/h and {:.4g} N m at the ring gear: {}",
+                                  3.6 * places[i][0], places[i][1], points[i].refusal_message));
       }
       const PointFigures& figures = *points[i].figures;
       count_warnings(figures);
@@ -220,16 +222,10 @@ class FluidPoints {
   }
 
  private:
-  struct CountedWarning {
-    std::string sentence;  // of the first point
-    int points = 0;
-  };
-
   void count_warnings(const PointFigures& figures) {
     ++points_;
-    for (const RangeWarning& each : figures.warnings) {
-      ++warnings_.try_emplace(each.code, CountedWarning{each.sentence}).first->second.points;
-    }
+    for (const RangeWarning& each : figures.warnings) ++counts_[each.code];
+    keep_furthest(figures.warnings, warnings_);
   }
 
   /// A place of the map is the level road at the acceleration that gives its torque.
@@ -258,7 +254,8 @@ class FluidPoints {
   Scene physical_;
   PointOptions options_;
   int points_ = 0;  // that have figures
-  std::map<std::string, CountedWarning> warnings_;
+  std::vector<RangeWarning> warnings_;
+  std::map<std::string, int> counts_;  // points by code
 };
 
 v1::CyclePartKind part_kind(CyclePartKind kind) {
@@ -430,6 +427,7 @@ v1::EvaluateCycleResponse evaluate_cycle(const v1::EvaluateCycleRequest& request
   out.set_gear_set_revision(base.effective.gear_set_revision());
   out.set_surface_revision(base.effective.surface_revision());
   out.set_vehicle_revision(base.effective.vehicle_revision());
+  out.set_not_included(kToothContactOnly);
   out.set_model_version(kModelVersion);
   return out;
 }

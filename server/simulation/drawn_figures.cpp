@@ -51,6 +51,7 @@ class FluidRows {
       for (std::size_t i = 0; i < fluid.sources[s].mixtures.size(); ++i) moved_.emplace_back(s, i);
     }
     fluid_.points = evaluate(Flags(conditions(), true));
+    options_.warning_sentences = false;  // of draws
     for (const EvaluatedPoint& point : fluid_.points) {
       fluid_.stated.push_back(stated_figures(point));
     }

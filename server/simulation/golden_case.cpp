@@ -56,6 +56,7 @@ internal::v1::ComputeTask golden_task() {
   v1::Simulation simulation;
   simulation.set_lubricant("lubricants/paper-fluid-1");
   simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(72.5);
+  simulation.mutable_model_options()->set_preset(v1::ModelOptions::PAPER);
   simulation.mutable_solver_options()->set_tolerance(kSolverTolerance);
   Violations violations;
   const auto inputs = read_simulation(simulation, seeds(), "simulation", violations);

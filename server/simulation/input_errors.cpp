@@ -67,6 +67,7 @@ void add_stated(const Message& resource, const Provenances& provenance, const st
     }
     const std::string input = prefix + field->name();
     if (done.contains(input)) continue;
+    if (field->has_presence() && !resource.GetReflection()->HasField(resource, field)) continue;
     const v1::ParameterProvenance* entry = entry_of(provenance, block + field->name());
     const double uncertainty = entry == nullptr ? 0 : entry->standard_uncertainty();
     if (!(uncertainty > 0)) {
@@ -84,7 +85,8 @@ void add_stated(const Message& resource, const Provenances& provenance, const st
            Message& moved = resource_of(inputs);
            moved.GetReflection()->SetDouble(
                &moved, field, within_range(*field, drawn_value(value, uncertainty, deviations[0])));
-         }});
+         },
+         uncertainty});
   }
 }
 

@@ -35,6 +35,7 @@ struct InputError {
   int deviations;         ///< number of independent standard normal deviations
   /// Sets the drawn values; with all deviations zero those that are stated.
   std::function<void(std::span<const double>, UncertainInputs&)> apply;
+  double standard_uncertainty = 0;  ///< of a single field, in its unit; 0: of several fields
 };
 
 /// Sources of error, and the fields that count as exact because nobody stated an uncertainty.

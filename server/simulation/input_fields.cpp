@@ -29,9 +29,12 @@ constexpr InputFields kInputFields[] = {
      "havriliak_negami_beta rheology_reference_temperature_kelvin "
      "limiting_shear_stress_at_zero_pressure_pascals limiting_shear_stress_coefficient "
      "thermal_conductivity_watts_per_metre_kelvin density_at_zero_kelvin_kilograms_per_cubic_metre "
-     "density_slope_kilograms_per_cubic_metre_kelvin improved_yasutomi",
+     "density_slope_kilograms_per_cubic_metre_kelvin improved_yasutomi "
+     "asperity_friction_coefficient tribofilm_shear_strength_pascals "
+     "asperity_friction_by_temperature",
      "name display_name description provenance base_oil_class measurements condition "
      "derived_from external_sample_id lims_id labels flash_point_celsius pour_point_celsius"},
+    {"BoundaryFrictionAtTemperature", "temperature_celsius asperity_friction_coefficient"},
     {"ImprovedYasutomi",
      "glass_viscosity_pascal_seconds glass_temperature_rise_kelvin "
      "glass_pressure_factor_per_pascal expansivity_pressure_factor_per_pascal "
@@ -81,7 +84,8 @@ constexpr InputFields kInputFields[] = {
      "isothermal newtonian no_limiting_shear_stress no_boundary_friction damping_in_contact_only "
      "energy_consistent subtract_contact_point_motion load_dependent_mesh_data "
      "pressure_viscosity_index exact_hertz hertz_from_total_load as_published "
-     "tabulated_friction_arms inlet_shear_heating"},
+     "tabulated_friction_arms inlet_shear_heating closed_load_sharing",
+     "preset"},  // the options hold its effect
     {"AsPublished",
      "eq17_atan eq20_semi_major eq22_inverted_ratio eq31_32_logarithm "
      "eq43_44_polynomials eq46_square_root_of_sum"},

@@ -12,6 +12,7 @@
 
 #include "core/numerics/square.h"
 #include "core/study/operating_target.h"
+#include "core/study/warning_kinds.h"
 #include "core/uncertainty/normal_draws.h"
 #include "core/uncertainty/spread.h"
 #include "core/version.h"
@@ -26,6 +27,7 @@ namespace {
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t kSeed = 1;  // any: equal requests give equal answers
 constexpr double kDefaultTolerance = 1e-3, kLeastTolerance = 1e-8;
+constexpr double kNormalQuantile = 1.959964;  // of a normal interval of 95 %
 /// Tolerance of points with contact figures, relative to that of the request [-]: the uncertainty
 /// of the inputs moves the extremes of the transmission error by as little as 0.1 %, the default
 /// tolerance.
@@ -96,13 +98,24 @@ const ErrorSource* counterpart(const ErrorSource& source, const ComputedFluid& f
   return nullptr;
 }
 
-/// Adds the shares of `fluid` less `first`, and returns the variance of the linear model.
-double add_difference_shares(const ComputedFluid& fluid, const ComputedFluid& first,
-                             std::size_t condition, v1::ComparedDifference& out) {
+/// The part of one input in the variance of a difference, and what it would be if the input were
+/// measured of each lubricant, with the same uncertainty.
+struct InputPart {
+  const InputError* error;
+  std::string revision;
+  double variance, measured_variance;
+};
+
+/// Adds the shares of `fluid` less `first`, and returns their parts in the variance of the linear
+/// model.
+std::vector<InputPart> add_difference_shares(const ComputedFluid& fluid, const ComputedFluid& first,
+                                             std::size_t condition, v1::ComparedDifference& out) {
   double variance = 0;
+  std::vector<InputPart> parts;
   const auto add = [&](const ErrorSource& source, const std::string& revision, double part,
-                       double effect) {
+                       double effect, double measured) {
     variance += part;
+    parts.push_back({source.error, revision, part, measured});
     v1::InputShare& share = *out.add_shares();
     share.set_input(source.error->input);
     share.set_lubricant_revision(revision);
@@ -113,7 +126,7 @@ double add_difference_shares(const ComputedFluid& fluid, const ComputedFluid& fi
     const ErrorSource* other = counterpart(source, first);
     if (other == nullptr) {
       const double part = source.squared_effect(condition, kEnergyMean);
-      add(source, fluid.revision, part, std::sqrt(part));
+      add(source, fluid.revision, part, std::sqrt(part), part);
       continue;
     }
     double part = 0;
@@ -124,15 +137,73 @@ double add_difference_shares(const ComputedFluid& fluid, const ComputedFluid& fi
           square(a) + square(b) - 2 * correlation(source.mixtures[i], other->mixtures[i]) * a * b;
     }
     part = std::max(0.0, part);
-    add(source, "", part, std::sqrt(part));
+    const bool is_estimate = source.error->sharing == InputError::Sharing::kEstimate;
+    add(source, "", part, std::sqrt(part),
+        is_estimate ? source.squared_effect(condition, kEnergyMean) +
+                          other->squared_effect(condition, kEnergyMean)
+                    : part);
   }
   for (const ErrorSource& source : first.sources) {
     if (counterpart(source, fluid) != nullptr) continue;
     const double part = source.squared_effect(condition, kEnergyMean);
-    add(source, first.revision, part, std::sqrt(part));
+    add(source, first.revision, part, std::sqrt(part), part);
   }
   finish_shares(variance, *out.mutable_shares());
-  return variance;
+  return parts;
+}
+
+double variance_of(const std::vector<InputPart>& parts) {
+  return std::accumulate(parts.begin(), parts.end(), 0.0,
+                         [](double sum, const InputPart& each) { return sum + each.variance; });
+}
+
+/// Adds what would tell two lubricants apart, by the linear model, scaled to the draws where their
+/// interval is wider: inputs known so much better that the interval leaves out 0.
+void add_deciding_inputs(const std::vector<InputPart>& parts, v1::ComparedDifference& out) {
+  constexpr double kLeastFactor = 0.05;  // nobody measures twenty times better
+  constexpr std::size_t kMostNamed = 3;
+  const v1::UncertainFigure& figure = out.difference_percent();
+  const double room = std::abs(figure.value()) - figure.solver_error();
+  const double all = variance_of(parts);
+  const double to_zero =
+      std::abs(figure.value() -
+               (figure.value() > 0 ? figure.interval_minimum() : figure.interval_maximum()));
+  const double scale = std::max(1.0, square(to_zero / kNormalQuantile) / all);
+  const double allowed = square(std::max(0.0, room) / kNormalQuantile) / scale;
+  if (!(allowed < all)) return;
+  const auto add = [&out](const InputPart& part, double factor) {
+    v1::DecidingInput& added = *out.add_deciding_inputs();
+    added.set_input(part.error->input);
+    added.set_lubricant_revision(part.revision);
+    added.set_standard_uncertainty(factor * part.error->standard_uncertainty);
+    added.set_factor(factor);
+  };
+  std::vector<std::pair<double, const InputPart*>> found;  // by factor
+  for (const InputPart& each : parts) {
+    const double left = allowed - (all - each.variance);
+    if (!(left > 0) || !(each.measured_variance > 0)) continue;
+    const double factor = std::sqrt(left / each.measured_variance);
+    if (factor >= kLeastFactor && factor < 1) found.emplace_back(factor, &each);
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  found.resize(std::min(found.size(), kMostNamed));
+  for (const auto& [factor, part] : found) add(*part, factor);
+  if (!found.empty()) return;
+  // No single input would do: the largest together, until the others leave enough room.
+  std::vector<InputPart> sorted = parts;
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const InputPart& a, const InputPart& b) { return a.variance > b.variance; });
+  double rest = all, measured = 0;
+  for (std::size_t count = 1; count <= std::min(kMostNamed, sorted.size()); ++count) {
+    rest -= sorted[count - 1].variance;
+    measured += sorted[count - 1].measured_variance;
+    const double factor = std::sqrt(std::max(0.0, allowed - rest) / measured);
+    if (!(factor >= kLeastFactor && factor < 1)) continue;
+    for (std::size_t i = 0; i < count; ++i) add(sorted[i], factor);
+    out.set_all_needed(count > 1);
+    return;
+  }
 }
 
 /// Returns the inefficiency of a fluid in a draw. A fluid without errors has no draws: its stated
@@ -155,8 +226,8 @@ v1::ComparedDifference difference(const ComputedFluid& fluid, const ComputedFlui
   const StatedFigures &a = *fluid.stated[condition], &b = *first.stated[condition];
   figure.set_value(a.value[kEnergyMean] - b.value[kEnergyMean]);
   figure.set_solver_error(a.solver_error[kEnergyMean] + b.solver_error[kEnergyMean]);
-  figure.set_linear_standard_uncertainty(
-      std::sqrt(add_difference_shares(fluid, first, condition, out)));
+  const std::vector<InputPart> parts = add_difference_shares(fluid, first, condition, out);
+  figure.set_linear_standard_uncertainty(std::sqrt(variance_of(parts)));
   const std::size_t draws = std::max(fluid.drawn.size(), first.drawn.size());
   std::vector<double> drawn;
   for (std::size_t n = 0; n < draws; ++n) {
@@ -166,6 +237,15 @@ v1::ComparedDifference difference(const ComputedFluid& fluid, const ComputedFlui
   }
   set_spread(drawn, static_cast<int>(draws), figure.solver_error(), figure);
   if (drawn.empty()) drawn.push_back(figure.value());
+  out.set_lower_probability(kNoNumber);
+  if (fluid.is_withheld(condition) || first.is_withheld(condition)) {
+    out.set_verdict(v1::ComparedDifference::WITHHELD);
+    return out;
+  }
+  if (!fluid.is_uncertainty_stated || !first.is_uncertainty_stated) {
+    out.set_verdict(v1::ComparedDifference::UNCERTAINTY_NOT_STATED);
+    return out;
+  }
   out.set_lower_probability(share_below_zero(drawn));
   if (figure.interval_maximum() < 0) {
     out.set_verdict(v1::ComparedDifference::LOWER);
@@ -173,6 +253,7 @@ v1::ComparedDifference difference(const ComputedFluid& fluid, const ComputedFlui
     out.set_verdict(v1::ComparedDifference::HIGHER);
   } else if (std::isfinite(figure.interval_minimum())) {
     out.set_verdict(v1::ComparedDifference::CANNOT_BE_TOLD_APART);
+    add_deciding_inputs(parts, out);
   }
   return out;
 }
@@ -218,6 +299,7 @@ v1::ComparedLubricant lubricant_message(const ComputedFluid& fluid, const Comput
                                         const InputErrors& errors) {
   v1::ComparedLubricant out;
   out.set_lubricant_revision(fluid.revision);
+  out.set_uncertainty_stated(fluid.is_uncertainty_stated);
   const std::size_t conditions = fluid.points.size();
   const bool is_first = &fluid == &first;
   for (std::size_t k = 0; k < conditions; ++k) {
@@ -235,28 +317,42 @@ v1::ComparedLubricant lubricant_message(const ComputedFluid& fluid, const Comput
   return out;
 }
 
-/// Returns for each fluid the share of draws in which its mean is the least of all; equal ones
-/// share a draw. Draws in which a fluid has no mean are left out.
+/// Whether a fluid takes part in a ranking: its mean exists, and nothing withholds the verdict.
+bool is_ranked(const ComputedFluid& fluid) {
+  return fluid.stated.back() && !fluid.is_withheld(fluid.points.size());
+}
+
+/// Returns for each fluid the share of draws in which its mean is the least of all that are ranked
+/// and state an uncertainty; equal ones share a draw. NaN for others. Draws in which one has no
+/// mean are left out.
 std::vector<double> best_probabilities(const std::vector<ComputedFluid>& fluids) {
-  std::vector<double> out(fluids.size(), 0.0);
+  std::vector<double> out(fluids.size(), kNoNumber);
+  std::vector<std::size_t> members;
   std::size_t draws = 1;
-  for (const ComputedFluid& fluid : fluids) draws = std::max(draws, fluid.drawn.size());
+  for (std::size_t i = 0; i < fluids.size(); ++i) {
+    if (!is_ranked(fluids[i]) || !fluids[i].is_uncertainty_stated) continue;
+    members.push_back(i);
+    out[i] = 0;
+    draws = std::max(draws, fluids[i].drawn.size());
+  }
+  if (members.size() < 2 && fluids.size() > 1) return std::vector<double>(fluids.size(), kNoNumber);
   double counted = 0;
   for (std::size_t n = 0; n < draws; ++n) {
     std::vector<double> means;
-    for (const ComputedFluid& fluid : fluids) {
-      if (const auto mean = drawn_inefficiency(fluid, fluid.points.size(), n))
+    for (const std::size_t i : members) {
+      if (const auto mean = drawn_inefficiency(fluids[i], fluids[i].points.size(), n)) {
         means.push_back(*mean);
+      }
     }
-    if (means.size() < fluids.size()) continue;
+    if (means.empty() || means.size() < members.size()) continue;
     ++counted;
     const double least = *std::min_element(means.begin(), means.end());
     const auto equal = static_cast<double>(std::count(means.begin(), means.end(), least));
-    for (std::size_t i = 0; i < means.size(); ++i) {
-      if (means[i] == least) out[i] += 1 / equal;
+    for (std::size_t k = 0; k < means.size(); ++k) {
+      if (means[k] == least) out[members[k]] += 1 / equal;
     }
   }
-  for (double& share : out) share = counted > 0 ? share / counted : kNoNumber;
+  for (const std::size_t i : members) out[i] = counted > 0 ? out[i] / counted : kNoNumber;
   return out;
 }
 
@@ -267,7 +363,7 @@ void add_ranking(const std::vector<ComputedFluid>& fluids, v1::ComparePointsResp
     return fluid.stated.back()->value[kEnergyMean];
   };
   for (const ComputedFluid& fluid : fluids) {
-    if (fluid.stated.back() && (best == nullptr || mean(fluid) < mean(*best))) best = &fluid;
+    if (is_ranked(fluid) && (best == nullptr || mean(fluid) < mean(*best))) best = &fluid;
   }
   const std::vector<double> probabilities = best_probabilities(fluids);
   for (std::size_t i = 0; i < fluids.size(); ++i) {
@@ -383,6 +479,7 @@ v1::ComparePointsResponse compare_points(const PointComparison& comparison,
   for (std::size_t i = 0; i < fluids.size(); ++i) {
     const PointComparison::Fluid& fluid = comparison.fluids[i];
     fluids[i].revision = fluid.evaluation.base.effective.lubricant_revision();
+    fluids[i].is_uncertainty_stated = !fluid.errors.errors.empty();
     for (const InputErrors* errors : {&fluid.errors, &comparison.scene_errors}) {
       for (const InputError& error : errors->errors) {
         fluids[i].sources.push_back({&error, deviations.of(error, fluids[i].revision), {}});
@@ -413,6 +510,7 @@ v1::ComparePointsResponse compare_points(const PointComparison& comparison,
   out.set_surface_revision(base.effective.surface_revision());
   out.set_vehicle_revision(base.effective.vehicle_revision());
   out.set_model_version(kModelVersion);
+  out.set_not_included(kToothContactOnly);
   return out;
 }
 

@@ -67,6 +67,8 @@ const std::map<std::string_view, std::string_view>& scene_parameter_names() {
       {"surface.asperity_density_per_square_metre", "roughness.asperity_density"},
       {"surface.asperity_radius_metres", "roughness.asperity_radius"},
       {"surface.composite_rms_height_metres", "roughness.composite_rms_height"},
+      {"lubricant.tribofilm_shear_strength_pascals", "lubricant.tribofilm_shear_strength"},
+      {"lubricant.asperity_friction_coefficient", "lubricant.asperity_friction_coefficient"},
       {"surface.tribofilm_shear_strength_pascals", "boundary.tribofilm_shear_strength"},
       {"surface.asperity_friction_coefficient", "boundary.asperity_friction_coefficient"},
       {"gear_set.youngs_modulus_pascals", "solid.youngs_modulus"},
@@ -138,7 +140,7 @@ std::vector<double> elasticity_values(const std::optional<PointSensitivities>& s
       return each.parameter == elasticities[i].scene_parameter;
     });
     if (found == all.end()) {
-      out[i] = 0;  // a parameter of a law that the lubricant does not follow
+      out[i] = 0;  // a parameter that the point does not have: of another law, or overridden
       continue;
     }
     const double value = sensitivities->elasticity(*found, elasticities[i].orbit_figure);

@@ -11,12 +11,15 @@
 #include <string_view>
 
 #include "core/refusal.h"
+#include "core/study/warning_kinds.h"
 #include "core/version.h"
 #include "server/contract/check_message.h"
 #include "server/contract/constraints.h"
 #include "server/mapping/from_core.h"
 #include "server/mapping/to_core.h"
+#include "server/simulation/fluid_grounds.h"
 #include "server/simulation/input_fields.h"
+#include "server/simulation/row_warnings.h"
 #include "server/simulation/solver_defaults.h"
 #include "server/simulation/study_checks.h"
 
@@ -147,6 +150,7 @@ class Rows {
     out_.mutable_contact_loss()->Resize(rows, false);
     out_.mutable_settled()->Resize(rows, false);
     out_.mutable_responses_coexist()->Resize(rows, false);
+    out_.mutable_verdict_withheld()->Resize(rows, false);
     out_.mutable_period_in_mesh_cycles()->Resize(rows, 0);
     out_.mutable_model()->Resize(rows, v1::POINT_MODEL_UNSPECIFIED);
     if (evaluation.with_contact) {
@@ -191,18 +195,8 @@ class Rows {
       out_.mutable_elasticities(static_cast<int>(i))->set_values(row, point.elasticities[i]);
     }
     if (point.is_one_sided) out_.set_elasticities_one_sided(row, true);
-    for (const RangeWarning& warning : figures.warnings) warn(row, warning);
-  }
-
-  void warn(int row, const RangeWarning& warning) {
-    const auto [at, is_new] =
-        warnings_.emplace(std::pair(warning.code, warning.sentence), out_.warnings_size());
-    if (is_new) {
-      v1::PointWarning& added = *out_.add_warnings();
-      added.set_code(warning.code);
-      added.set_message(warning.sentence);
-    }
-    out_.mutable_warnings(at->second)->add_rows(row);
+    warnings_.add(row, figures.warnings, *out_.mutable_warnings());
+    out_.set_verdict_withheld(row, any_withholds_verdict(figures.warnings));
   }
 
   void refuse(int row, const std::string& reason, const std::string& message) {
@@ -220,8 +214,8 @@ class Rows {
 
  private:
   v1::EvaluatePointsResponse out_;
-  std::map<std::pair<std::string, std::string>, int> numbers_;   // of refusals, from 1
-  std::map<std::pair<std::string, std::string>, int> warnings_;  // positions
+  std::map<std::pair<std::string, std::string>, int> numbers_;  // of refusals, from 1
+  RowWarnings warnings_;
 };
 
 bool is_finite(const PointFigures& figures) {
@@ -295,12 +289,9 @@ void evaluate_group(const PointEvaluation::Group& group, const PointEvaluation& 
                     std::vector<EvaluatedPoint>& out) {
   const double sump = group.sump_temperature_celsius + errors.sump_kelvin;
   const double rise = std::max(0.0, group.inlet_temperature_rise_kelvin + errors.inlet_rise_kelvin);
-  Violations inlet;
-  check_fluid_at_inlet(lubricant, sump, rise, "lubricant", inlet);
-  if (!inlet.empty()) {
+  if (const auto [reason, message] = refusal_at_inlet(lubricant, sump, rise); !reason.empty()) {
     for (const auto& [position, condition] : group.conditions) {
-      out[static_cast<std::size_t>(position)] =
-          refused_point("INVALID_AT_INLET", inlet.front().description);
+      out[static_cast<std::size_t>(position)] = refused_point(reason, message);
     }
     return;
   }
@@ -355,17 +346,32 @@ std::vector<PointEvaluation::Column> read_columns(const v1::EvaluatePointsReques
   return out;
 }
 
-void check_law_columns(const v1::EvaluatePointsRequest& request, const v1::Lubricant& base,
-                       Violations& violations) {
+void check_columns_of_base(const v1::EvaluatePointsRequest& request, const v1::Lubricant& base,
+                           Violations& violations) {
+  const bool follows_law = base.has_improved_yasutomi();
+  const bool has_table = base.asperity_friction_by_temperature_size() > 0;
+  std::set<std::string> stated;
+  for (const v1::CandidateColumn& each : request.candidate_columns()) stated.insert(each.path());
+  if (has_table || base.has_asperity_friction_coefficient()) {
+    stated.insert("lubricant.asperity_friction_coefficient");
+  }
+  if (base.has_tribofilm_shear_strength_pascals()) {
+    stated.insert("lubricant.tribofilm_shear_strength_pascals");
+  }
   for (int i = 0; i < request.candidate_columns_size(); ++i) {
     const std::string& path = request.candidate_columns(i).path();
-    const bool is_of_law = path.starts_with("lubricant.improved_yasutomi.");
-    const bool is_of_roelands = path.starts_with("lubricant.pressure_viscosity_");
-    const bool follows_law = base.has_improved_yasutomi();
-    if (!(follows_law ? is_of_roelands : is_of_law)) continue;
-    violations.add(fmt::format("candidate_columns[{}].path", i),
-                   "\"{}\" has no effect: {} {} improved_yasutomi", path, request.lubricant(),
-                   follows_law ? "follows" : "does not follow");
+    std::string cause;
+    if (path.starts_with(follows_law ? "lubricant.pressure_viscosity_"
+                                     : "lubricant.improved_yasutomi.")) {
+      cause = std::string(follows_law ? "follows" : "does not follow") + " improved_yasutomi";
+    } else if (path == "lubricant.asperity_friction_coefficient" && has_table) {
+      cause = "has asperity_friction_by_temperature";
+    } else if (path.starts_with("surface.") && stated.contains("lubricant." + path.substr(8))) {
+      cause = "states its own; use \"lubricant." + path.substr(8) + "\"";
+    }
+    if (cause.empty()) continue;
+    violations.add(fmt::format("candidate_columns[{}].path", i), "\"{}\" has no effect: {} {}",
+                   path, request.lubricant(), cause);
   }
 }
 
@@ -397,7 +403,7 @@ std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& requ
   const bool is_valid = violations.size() == before;
   auto base = read_simulation(simulation_of(request, is_valid ? request.conditions(0) : usual),
                               lookup, "", violations);
-  if (base) check_law_columns(request, *base->lubricant, violations);
+  if (base) check_columns_of_base(request, *base->lubricant, violations);
   if (!base || violations.size() > before) return std::nullopt;
   out.base = std::move(*base);
   out.groups = groups_of(request, out.base);
@@ -408,6 +414,7 @@ PointOptions point_options(const PointEvaluation& evaluation) {
   PointOptions out = std::get<PointStudy>(study(evaluation.base)).options;
   out.contact_summary = evaluation.with_contact;
   out.sensitivities = !evaluation.elasticities.empty();
+  out.warning_sentences = evaluation.with_sentences;
   return out;
 }
 
@@ -418,7 +425,7 @@ std::vector<EvaluatedPoint> evaluate_conditions(const PointEvaluation& evaluatio
                                                 const std::shared_ptr<PreparedGearSet>& gear_set,
                                                 const std::vector<bool>* wanted) {
   std::vector<EvaluatedPoint> out(static_cast<std::size_t>(evaluation.conditions));
-  physical.lubricant = to_core(lubricant);
+  set_lubricant(lubricant, physical);
   for (PointEvaluation::Group group : evaluation.groups) {
     if (wanted != nullptr) {
       std::erase_if(group.conditions, [wanted](const auto& each) {
@@ -439,8 +446,12 @@ CandidateScene::CandidateScene(const PointEvaluation& evaluation, std::function<
   options_.progress = [keep = std::move(goes_on)](double) { return keep(); };
 }
 
-void CandidateResources::set(const std::vector<PointEvaluation::Column>& columns, int candidate) {
-  for (const PointEvaluation::Column& column : columns) {
+void CandidateResources::set(const PointEvaluation& evaluation, int candidate) {
+  if (!evaluation.lubricants.empty()) {
+    lubricant = *evaluation.lubricants[static_cast<std::size_t>(candidate)];
+    return;
+  }
+  for (const PointEvaluation::Column& column : evaluation.columns) {
     const Descriptor* type = column.field->containing_type();
     google::protobuf::Message* holder = &lubricant;
     if (type == v1::Surface::descriptor()) holder = &surface;
@@ -451,8 +462,18 @@ void CandidateResources::set(const std::vector<PointEvaluation::Column>& columns
 }
 
 void CandidateScene::set_candidate(int candidate) {
-  resources_.set(evaluation_.columns, candidate);
-  physical_.lubricant = to_core(resources_.lubricant);
+  resources_.set(evaluation_, candidate);
+  set_scene();
+}
+
+void CandidateScene::set_resources(const v1::Lubricant& lubricant, const v1::Surface& surface) {
+  resources_ = {lubricant, surface};
+  set_scene();
+}
+
+void CandidateScene::set_scene() {
+  set_lubricant(resources_.lubricant, physical_);
+  physical_.fluid_grounds = fluid_grounds(resources_.lubricant);
   physical_.roughness = roughness(resources_.surface);
   physical_.boundary = boundary_friction(resources_.surface);
 }
@@ -485,6 +506,7 @@ v1::EvaluatePointsResponse evaluate_points(const PointEvaluation& evaluation,
   gear_sets.give_back(evaluation.base.gear_set, candidate.scene().options, gear_set);
 
   v1::EvaluatePointsResponse out = rows.take();
+  out.set_not_included(kToothContactOnly);
   out.set_candidates(evaluation.candidates);
   out.set_conditions(evaluation.conditions);
   const v1::Simulation& effective = evaluation.base.effective;

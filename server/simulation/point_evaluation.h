@@ -39,12 +39,15 @@ struct PointEvaluation {
   SimulationInputs base;  ///< the base of all candidates, at the first condition
   std::vector<Column> columns;
   std::vector<Group> groups;
+  /// Of candidates that are lubricants: their columns are for people.
+  std::vector<std::shared_ptr<const v1::Lubricant>> lubricants;
   int candidates = 1;
   int conditions = 0;
   /// Whether other lubricants follow at the same few conditions: by screen_point(), or else by
   /// solve_point_figures().
   bool shares_orbits = true;
   bool with_contact = false;             ///< figures have PointFigures::contact
+  bool with_sentences = true;            ///< warnings have sentences
   std::vector<Elasticity> elasticities;  ///< that each point has
 };
 
@@ -67,10 +70,10 @@ struct TemperatureErrors {
 /// Reads the columns of candidates of a request. Adds all violations.
 std::vector<PointEvaluation::Column> read_columns(const v1::EvaluatePointsRequest& request,
                                                   Violations& violations);
-/// Adds a violation for each column that has no effect under the pressure-viscosity law of the
-/// base.
-void check_law_columns(const v1::EvaluatePointsRequest& request, const v1::Lubricant& base,
-                       Violations& violations);
+/// Adds a violation for each column that has no effect, because the base follows another
+/// pressure-viscosity law or boundary friction of the oil overrides that of the surface.
+void check_columns_of_base(const v1::EvaluatePointsRequest& request, const v1::Lubricant& base,
+                           Violations& violations);
 
 /// Checks the request and finds its resources. Returns nullopt and adds all violations if the
 /// request is invalid or has more than `most` points; `remedy` says what to do then.
@@ -106,8 +109,9 @@ struct CandidateResources {
   v1::Lubricant lubricant;
   v1::Surface surface;
 
-  /// Replaces the parameters that have columns by those of a candidate, counted from 0.
-  void set(const std::vector<PointEvaluation::Column>& columns, int candidate);
+  /// Takes the lubricant of a candidate, counted from 0, or replaces the parameters that have
+  /// columns by those of the candidate.
+  void set(const PointEvaluation& evaluation, int candidate);
 };
 
 /// The candidates of an evaluation, one at a time. Not safe for concurrent access.
@@ -120,6 +124,8 @@ class CandidateScene {
 
   /// Makes the scene that of a candidate, counted from 0.
   void set_candidate(int candidate);
+  /// Makes it that of any lubricant and surface.
+  void set_resources(const v1::Lubricant& lubricant, const v1::Surface& surface);
   /// Computes the candidate at one group of conditions. Throws Cancelled as soon as `goes_on`
   /// returns false; then the gear set may be half prepared.
   void evaluate(const PointEvaluation::Group& group,
@@ -127,6 +133,8 @@ class CandidateScene {
   const Scene& scene() const { return physical_; }
 
  private:
+  void set_scene();
+
   const PointEvaluation& evaluation_;
   PointOptions options_;
   Scene physical_;

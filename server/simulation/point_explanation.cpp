@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <string>
 #include <utility>
 
 #include "core/refusal.h"
+#include "core/study/range_warnings.h"
+#include "core/study/warning_kinds.h"
 #include "core/uncertainty/shapley.h"
 #include "core/version.h"
 #include "server/contract/check_message.h"
@@ -62,40 +65,38 @@ const std::array<Group, kGroups>& groups() {
          "density_slope_kilograms_per_cubic_metre_kelvin"},
         {}},
        {v1::PARAMETER_GROUP_BOUNDARY_FILM,
-        {},
+        {"asperity_friction_coefficient", "tribofilm_shear_strength_pascals",
+         "asperity_friction_by_temperature"},
         {"asperity_density_per_square_metre", "asperity_radius_metres",
          "composite_rms_height_metres", "tribofilm_shear_strength_pascals",
          "asperity_friction_coefficient"}}}};
   return kAll;
 }
 
-bool is_message(const FieldDescriptor& field) {
-  return field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
-}
-
 void copy_fields(const Message& from, const std::vector<const char*>& fields, Message& to) {
+  const auto &of_from = *from.GetReflection(), &of_to = *to.GetReflection();
   for (const char* name : fields) {
     const FieldDescriptor* field = to.GetDescriptor()->FindFieldByName(name);
-    if (!is_message(*field)) {
-      to.GetReflection()->SetDouble(&to, field, from.GetReflection()->GetDouble(from, field));
+    of_to.ClearField(&to, field);
+    if (field->is_repeated()) {
+      for (int i = 0; i < of_from.FieldSize(from, field); ++i) {
+        of_to.AddMessage(&to, field)->CopyFrom(of_from.GetRepeatedMessage(from, field, i));
+      }
+    } else if (!of_from.HasField(from, field)) {
       continue;
+    } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
+      of_to.MutableMessage(&to, field)->CopyFrom(of_from.GetMessage(from, field));
+    } else {
+      of_to.SetDouble(&to, field, of_from.GetDouble(from, field));
     }
-    to.GetReflection()->ClearField(&to, field);
-    if (!from.GetReflection()->HasField(from, field)) continue;
-    to.GetReflection()
-        ->MutableMessage(&to, field)
-        ->CopyFrom(from.GetReflection()->GetMessage(from, field));
   }
 }
 
 bool are_equal(const Message& a, const Message& b, const std::vector<const char*>& fields) {
-  return std::all_of(fields.begin(), fields.end(), [&](const char* name) {
-    const FieldDescriptor* field = a.GetDescriptor()->FindFieldByName(name);
-    const auto &of_a = *a.GetReflection(), &of_b = *b.GetReflection();
-    if (!is_message(*field)) return of_a.GetDouble(a, field) == of_b.GetDouble(b, field);
-    return of_a.HasField(a, field) == of_b.HasField(b, field) &&
-           MessageDifferencer::Equals(of_a.GetMessage(a, field), of_b.GetMessage(b, field));
-  });
+  const std::unique_ptr<Message> of_a(a.New()), of_b(b.New());
+  copy_fields(a, fields, *of_a);
+  copy_fields(b, fields, *of_b);
+  return MessageDifferencer::Equals(*of_a, *of_b);
 }
 
 /// Returns the set of groups in which both differ: bit g is 1 if group g does.
@@ -119,7 +120,8 @@ struct Combinations {
   std::array<std::vector<double>, kExplainedFigures> values;
   std::array<std::vector<double>, kExplainedFigures> solver_errors;
   int contact_losses = 0;
-  std::map<std::string, RangeWarning> warnings;  ///< the first of each code
+  /// Of the points of the two oils: one of each code, about the point furthest outside.
+  std::vector<RangeWarning> warnings;
   std::string refusal_reason, refusal_message;
 
   Combinations() {
@@ -143,7 +145,6 @@ struct Combinations {
           point.figures->estimated_relative_error.value_or(0) * std::abs(values[i][combination]);
     }
     if (point.figures->contact_loss) ++contact_losses;
-    for (const RangeWarning& each : point.figures->warnings) warnings.try_emplace(each.code, each);
   }
 };
 
@@ -159,7 +160,7 @@ void add_mean(const std::vector<double>& weights, ExplainedConditions& condition
       mean.refusal_message = each.refusal_message;
     }
     mean.contact_losses = std::max(mean.contact_losses, each.contact_losses);
-    mean.warnings.insert(each.warnings.begin(), each.warnings.end());
+    keep_furthest(each.warnings, mean.warnings);
     for (std::size_t i = 0; i < kExplainedFigures; ++i) {
       for (std::size_t set = 0; set < kCombinations; ++set) {
         mean.values[i][set] += weights[k] * each.values[i][set];
@@ -183,7 +184,6 @@ class DrawnSide {
   DrawnSide(const PointExplanation::Side& side, bool shares_surface, Deviations& deviations) {
     const SimulationInputs& base = side.evaluation.base;
     inputs_.lubricant = *base.lubricant;
-    inputs_.lubricant.clear_measurements();
     inputs_.lubricant.clear_provenance();
     inputs_.surface = *base.surface;
     inputs_.surface.clear_provenance();
@@ -234,8 +234,14 @@ class CombinationPoints {
     for (std::size_t set = 0; set < kCombinations; ++set) {
       // Exchanging an equal group changes nothing: that combination is computed already.
       const std::size_t computed = set & differing;
-      if (computed == set) points[set] = evaluate(first, other, set);
+      if (computed == set) points[set] = evaluate(first, other, set, differing);
       for (std::size_t k = 0; k < out.size(); ++k) out[k].set(set, points[computed][k]);
+    }
+    for (const std::size_t of_an_oil : {std::size_t{0}, differing}) {
+      for (std::size_t k = 0; k < out.size(); ++k) {
+        const EvaluatedPoint& point = points[of_an_oil][k];
+        if (point.figures) keep_furthest(point.figures->warnings, out[k].warnings);
+      }
     }
     add_mean(explanation_.weights, out);
     return out;
@@ -243,8 +249,9 @@ class CombinationPoints {
 
  private:
   std::vector<EvaluatedPoint> evaluate(const UncertainInputs& first, const UncertainInputs& other,
-                                       std::size_t set) {
-    v1::Lubricant lubricant = first.lubricant;
+                                       std::size_t set, std::size_t differing) {
+    // With all groups exchanged it is the other oil, with what its warnings depend on.
+    v1::Lubricant lubricant = (set == differing ? other : first).lubricant;
     v1::Surface surface = first.surface;
     for (std::size_t g = 0; g < kGroups; ++g) {
       if ((set >> g & 1) == 0) continue;
@@ -365,13 +372,32 @@ v1::DifferenceExplanation explanation_message(const ComputedCombinations& all,
     }
   }
   out.set_contact_loss_combinations(stated.contact_losses);
-  for (const auto& [code, warning] : stated.warnings) {
-    add_warnings({warning}, out.mutable_warnings());
-  }
+  add_warnings(stated.warnings, out.mutable_warnings());
   for (const ExplainedConditions& draw : all.drawn) {
     if (draw[condition].is_refused()) out.set_refused_draws(out.refused_draws() + 1);
   }
   return out;
+}
+
+/// Without a stated uncertainty of both oils nobody knows how sure their difference is.
+void clear_uncertainties(v1::DifferenceExplanation& explanation) {
+  const auto clear = [](v1::DrawnFigure& figure) {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    figure.set_standard_uncertainty(kUnknown);
+    figure.set_interval_minimum(kUnknown);
+    figure.set_interval_maximum(kUnknown);
+  };
+  if (!explanation.refusal_reason().empty()) return;
+  clear(*explanation.mutable_inefficiency_percent());
+  clear(*explanation.mutable_other_inefficiency_percent());
+  clear(*explanation.mutable_inefficiency_difference_percent());
+  clear(*explanation.mutable_mesh_loss_power_watts());
+  clear(*explanation.mutable_other_mesh_loss_power_watts());
+  clear(*explanation.mutable_mesh_loss_power_difference_watts());
+  for (v1::DifferenceCause& cause : *explanation.mutable_causes()) {
+    clear(*cause.mutable_inefficiency_percent()->mutable_shapley_value());
+    clear(*cause.mutable_mesh_loss_power_watts()->mutable_shapley_value());
+  }
 }
 
 /// Returns the request for the points of one lubricant on its surface.
@@ -495,8 +521,13 @@ v1::ExplainPointsResponse explain_points(const PointExplanation& explanation,
 
   v1::ExplainPointsResponse out;
   const std::size_t conditions = explanation.weights.size();
-  for (std::size_t k = 0; k < conditions; ++k) *out.add_points() = explanation_message(all, k);
-  *out.mutable_mean() = explanation_message(all, conditions);
+  const bool is_stated = !explanation.first.lubricant_errors.errors.empty() &&
+                         !explanation.other.lubricant_errors.errors.empty();
+  for (std::size_t k = 0; k <= conditions; ++k) {
+    v1::DifferenceExplanation& each = k < conditions ? *out.add_points() : *out.mutable_mean();
+    each = explanation_message(all, k);
+    if (!is_stated) clear_uncertainties(each);
+  }
   out.set_draws(explanation.draws);
   out.set_estimate_correlation(explanation.estimate_correlation);
   out.set_lubricant_revision(effective.lubricant_revision());
@@ -505,6 +536,7 @@ v1::ExplainPointsResponse explain_points(const PointExplanation& explanation,
   out.set_surface_revision(effective.surface_revision());
   out.set_other_surface_revision(other_effective.surface_revision());
   out.set_vehicle_revision(effective.vehicle_revision());
+  out.set_not_included(kToothContactOnly);
   out.set_model_version(kModelVersion);
   return out;
 }

@@ -11,6 +11,7 @@
 #include "core/surface/measured_surface.h"
 #include "core/surface/roughness_product.h"
 #include "core/surface/spectral_moments.h"
+#include "server/mapping/from_core.h"
 #include "server/resources/imports/read_profiles.h"
 
 namespace tribodyn::server {
@@ -110,9 +111,7 @@ void add_profile_warnings(const v1::ProfileRoughness& roughness,
                           v1::EvaluateProfilesResponse& out) {
   const auto add = [&out](const char* code, const std::string& sentence) {
     if (sentence.empty()) return;
-    v1::RangeWarning& warning = *out.add_warnings();
-    warning.set_code(code);
-    warning.set_message(sentence);
+    *out.add_warnings() = to_message(RangeWarning{code, sentence});
   };
   add("PROFILE_NOT_RESOLVED", unresolved_text(out.measurements()));
   add("SURFACE_PARTLY_MEASURED", unmeasured_text(out.measurements()));

@@ -11,7 +11,7 @@
 
 #include "core/refusal.h"
 #include "core/study/figure_limits.h"
-#include "core/study/range_sentences.h"
+#include "core/study/range_warnings.h"
 #include "core/version.h"
 #include "server/contract/check_message.h"
 #include "server/mapping/to_core.h"
@@ -19,6 +19,7 @@
 #include "server/simulation/fluid_grounds.h"
 #include "server/simulation/refused_rows.h"
 #include "server/simulation/rig_uncertainty.h"
+#include "server/simulation/row_warnings.h"
 #include "server/simulation/study_checks.h"
 
 namespace tribodyn::server {
@@ -155,63 +156,23 @@ void check_grid_loads(const v1::EvaluateRigRequest& request, Violations& violati
   }
 }
 
-/// Where rows leave the ranges of the laws: the rows of each law, and the sentence of the row that
-/// is furthest outside.
-class RigWarnings {
- public:
-  RigWarnings(const RigEvaluation& evaluation, v1::EvaluateRigResponse& out)
-      : scene_(evaluation.scene), grounds_(fluid_grounds(*evaluation.lubricant)), out_(out) {}
-
-  void add(int row, double inlet_temperature, const RigPoint& point) {
-    const double highest_temperature = std::max(inlet_temperature, point.contact_temperature);
-    if (const auto& measured = grounds_.viscosity_measured) {
-      add(row, "VISCOSITY_TEMPERATURE",
-          viscosity_sentence(grounds_, inlet_temperature, highest_temperature),
-          std::max(measured->lowest - inlet_temperature, highest_temperature - measured->highest));
-    }
-    add(row, "PRESSURE", pressure_sentence(point.maximum_pressure),
-        std::max(kLowestComparedPressure / point.maximum_pressure,
-                 point.maximum_pressure / kHighestComparedPressure));
-    if (scene_.roughness.asperity_density > 0) {
-      add(row, "FILM_RATIO", film_ratio_sentence(point.film_ratio), -point.film_ratio);
-      add(row, "ROUGHNESS_PRODUCT", roughness_product_sentence(scene_.roughness), 0);
-    }
-    add(row, "LIMITING_STRESS",
-        limiting_stress_sentence(grounds_, point.limiting_stress_area_share),
-        point.limiting_stress_area_share);
-    add(row, "COLD_INLET", cold_inlet_sentence(inlet_temperature, scene_.options),
-        -inlet_temperature);
-    add(row, "ISOTHERMAL", isothermal_sentence(scene_.options), 0);
-  }
-
- private:
-  struct Furthest {
-    v1::RigRangeWarning* warning;
-    double excess;
-  };
-
-  void add(int row, const char* code, const std::string& sentence, double excess) {
-    if (sentence.empty()) return;
-    const auto [at, is_new] = known_.try_emplace(code);
-    Furthest& furthest = at->second;
-    if (is_new) {
-      furthest.warning = out_.add_range_warnings();
-      furthest.warning->set_code(code);
-    }
-    if (is_new || excess > furthest.excess) {
-      furthest.excess = excess;
-      furthest.warning->set_message(sentence);
-    }
-    furthest.warning->add_rows(row);
-  }
-
-  const RigScene& scene_;
-  FluidGrounds grounds_;
-  v1::EvaluateRigResponse& out_;
-  std::map<std::string, Furthest> known_;  // by code
-};
-
 }  // namespace
+
+std::vector<RangeWarning> rig_warnings(const RigScene& scene, const FluidGrounds& grounds,
+                                       double supply_temperature_celsius, const RigPoint& point,
+                                       bool with_sentences) {
+  RangeFigures figures;
+  figures.maximum_pressure = point.maximum_pressure;
+  figures.film_ratio = point.film_ratio;
+  figures.film_thickness = point.central_film_thickness;
+  figures.contact_temperature = point.contact_temperature;
+  figures.limiting_stress_area_share = point.limiting_stress_area_share;
+  figures.inlet_heating_factor = point.inlet_heating_factor;
+  figures.inlet_viscosity = point.inlet_viscosity;
+  return range_warnings(
+      {grounds, scene.options, scene.roughness, supply_temperature_celsius + kZeroCelsius}, figures,
+      with_sentences);
+}
 
 std::span<const RigColumn> rig_columns() { return kRigColumns; }
 
@@ -287,7 +248,7 @@ std::optional<RigEvaluation> read_rig(const v1::EvaluateRigRequest& request,
   if (!lubricant || violations.size() > before) return std::nullopt;
   out.lubricant = lubricant->resource;
   out.lubricant_revision = lubricant->revision_name;
-  scene.lubricant = to_core(*lubricant->resource);
+  set_lubricant(*lubricant->resource, scene);
   scene.solids = solids_of(request);
   scene.radii = radii_of(request);
   scene.options = to_core(request.model_options());
@@ -307,7 +268,8 @@ v1::EvaluateRigResponse evaluate_rig(const v1::EvaluateRigRequest& request,
     (out.*each.column)()->Resize(rows, std::numeric_limits<double>::quiet_NaN());
   }
   RefusedRows refused(rows, *out.mutable_refusal_numbers(), *out.mutable_refusals());
-  RigWarnings warnings(evaluation, out);
+  RowWarnings warnings;
+  const FluidGrounds grounds = fluid_grounds(*evaluation.lubricant);
   std::map<double, Rig> rigs;  // by supply temperature
   for (int i = 0; i < rows; ++i) {
     if (is_over()) throw Cancelled();
@@ -317,10 +279,9 @@ v1::EvaluateRigResponse evaluate_rig(const v1::EvaluateRigRequest& request,
     try {
       auto rig = rigs.find(celsius);
       if (rig == rigs.end()) {
-        Violations at_inlet;
-        check_fluid_at_inlet(*evaluation.lubricant, celsius, 0, "lubricant", at_inlet);
-        if (!at_inlet.empty()) {
-          refused.add(i, "INVALID_AT_INLET", at_inlet.front().description);
+        const auto [reason, message] = refusal_at_inlet(*evaluation.lubricant, celsius, 0);
+        if (!reason.empty()) {
+          refused.add(i, reason, message);
           continue;
         }
         rig = rigs.emplace(celsius, Rig(evaluation.scene, celsius + kZeroCelsius)).first;
@@ -331,7 +292,8 @@ v1::EvaluateRigResponse evaluate_rig(const v1::EvaluateRigRequest& request,
       for (const RigColumn& each : kRigColumns) {
         (out.*each.column)()->Set(i, point.*each.figure);
       }
-      warnings.add(i, celsius + kZeroCelsius, point);
+      warnings.add(i, rig_warnings(evaluation.scene, grounds, celsius, point),
+                   *out.mutable_range_warnings());
     } catch (const Refusal& refusal) {
       refused.add(i, refusal.reason(), refusal.what());
     }

@@ -37,6 +37,11 @@ struct RigColumn {
 };
 std::span<const RigColumn> rig_columns();
 
+/// The warnings of a point of a rig; `grounds` are those of its lubricant.
+std::vector<RangeWarning> rig_warnings(const RigScene& scene, const FluidGrounds& grounds,
+                                       double supply_temperature_celsius, const RigPoint& point,
+                                       bool with_sentences = true);
+
 /// Sets roughness and boundary friction of the specimens. A height other than 0 replaces that of
 /// the surface.
 void set_surface(const v1::Surface& surface, double composite_rms_height, RigScene& scene);

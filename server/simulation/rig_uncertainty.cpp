@@ -58,7 +58,7 @@ std::vector<RigScene> drawn_scenes(const RigEvaluation& evaluation, const InputE
       errors.errors[e].apply(drawn, inputs);
     }
     RigScene& scene = out.emplace_back(evaluation.scene);
-    scene.lubricant = to_core(inputs.lubricant);
+    set_lubricant(inputs.lubricant, scene);
     if (evaluation.surface) set_surface(inputs.surface, evaluation.composite_rms_height, scene);
   }
   return out;

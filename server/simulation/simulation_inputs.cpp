@@ -19,17 +19,26 @@ namespace {
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
-void fill_options(v1::ModelOptions* options) {
-  if (options->as_published().eq31_32_logarithm()) {
-    options->set_pressure_viscosity_index(
+}  // namespace
+
+void fill_model_options(v1::ModelOptions& options) {
+  if (options.as_published().eq31_32_logarithm()) {
+    options.set_pressure_viscosity_index(
         v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_HOUPERT);  // the misprint is in eq 32
-  } else if (options->pressure_viscosity_index() ==
+  } else if (options.pressure_viscosity_index() ==
              v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_UNSPECIFIED) {
-    options->set_pressure_viscosity_index(
+    options.set_pressure_viscosity_index(
         v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_RECIPROCAL_ASYMPTOTIC);
   }
-  options->mutable_as_published();
+  options.mutable_as_published();
+  const ModelOptions effective = to_core(options);
+  options.set_preset(options.preset() == v1::ModelOptions::PAPER ? v1::ModelOptions::PAPER
+                                                                 : v1::ModelOptions::RECOMMENDED);
+  options.set_inlet_shear_heating(effective.inlet_shear_heating);
+  options.set_closed_load_sharing(effective.closed_load_sharing);
 }
+
+namespace {
 
 void fill_solver(v1::SolverOptions* solver) {
   const PointOptions defaults;
@@ -93,7 +102,7 @@ v1::Simulation with_defaults(v1::Simulation simulation) {
   if (!simulation.has_inlet_temperature_rise_kelvin()) {
     simulation.set_inlet_temperature_rise_kelvin(kDefaultInletTemperatureRiseKelvin);
   }
-  fill_options(simulation.mutable_model_options());
+  fill_model_options(*simulation.mutable_model_options());
   fill_solver(simulation.mutable_solver_options());
   if (simulation.has_operating_point()) fill_operating_point(simulation.mutable_operating_point());
   if (simulation.has_inefficiency_curve()) fill_curve(simulation.mutable_inefficiency_curve());
@@ -254,7 +263,8 @@ Scene scene(const SimulationInputs& inputs) {
           .sump_temperature = inputs.effective.sump_temperature_celsius() + kZeroCelsius,
           .inlet_temperature_rise = inputs.effective.inlet_temperature_rise_kelvin(),
           .options = to_core(inputs.effective.model_options()),
-          .fluid_grounds = fluid_grounds(*inputs.lubricant)};
+          .fluid_grounds = fluid_grounds(*inputs.lubricant),
+          .lubricant_boundary = lubricant_boundary(*inputs.lubricant)};
 }
 
 Study study(const SimulationInputs& inputs) {

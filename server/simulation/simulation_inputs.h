@@ -49,6 +49,9 @@ std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
                                                 const ResourceLookup& lookup,
                                                 const std::string& path, Violations& violations);
 
+/// Writes out what unset options mean.
+void fill_model_options(v1::ModelOptions& options);
+
 /// Returns the physical inputs for the core.
 Scene scene(const SimulationInputs& inputs);
 

@@ -118,6 +118,28 @@ void check_fluid_at_inlet(const v1::Lubricant& lubricant, double sump_temperatur
   }
 }
 
+void check_pour_point(const v1::Lubricant& lubricant, double sump_temperature_celsius,
+                      const std::string& path, Violations& violations) {
+  if (!lubricant.has_pour_point_celsius() ||
+      sump_temperature_celsius >= lubricant.pour_point_celsius()) {
+    return;
+  }
+  violations.add(path, "the oil is at {} C; allowed: at least the pour point, {} C",
+                 sump_temperature_celsius, lubricant.pour_point_celsius());
+}
+
+std::pair<std::string, std::string> refusal_at_inlet(const v1::Lubricant& lubricant,
+                                                     double sump_temperature_celsius,
+                                                     double inlet_temperature_rise_kelvin) {
+  Violations found;
+  check_pour_point(lubricant, sump_temperature_celsius, "lubricant", found);
+  if (!found.empty()) return {"BELOW_POUR_POINT", found.front().description};
+  check_fluid_at_inlet(lubricant, sump_temperature_celsius, inlet_temperature_rise_kelvin,
+                       "lubricant", found);
+  if (!found.empty()) return {"INVALID_AT_INLET", found.front().description};
+  return {};
+}
+
 void check_operating_point(const v1::OperatingPointStudy& study, const std::string& path,
                            Violations& violations) {
   if (study.condition_case() == v1::OperatingPointStudy::CONDITION_NOT_SET) {

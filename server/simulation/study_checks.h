@@ -15,6 +15,14 @@ namespace tribodyn::server {
 
 /// Checks that the lubricant's laws are valid at the inlet: T_0,ref below T_in (eq 34), positive
 /// density (eq 26), alpha* measured above T_0,ref (eq 33).
+/// Adds a violation if the sump is below the pour point that the lubricant states.
+void check_pour_point(const v1::Lubricant& lubricant, double sump_temperature_celsius,
+                      const std::string& path, Violations& violations);
+/// Returns why points have no figures at a temperature of the sump, UPPER_SNAKE_CASE and one
+/// sentence; empty texts if they may have.
+std::pair<std::string, std::string> refusal_at_inlet(const v1::Lubricant& lubricant,
+                                                     double sump_temperature_celsius,
+                                                     double inlet_temperature_rise_kelvin);
 void check_fluid_at_inlet(const v1::Lubricant& lubricant, double sump_temperature_celsius,
                           double inlet_temperature_rise_kelvin, const std::string& path,
                           Violations& violations);

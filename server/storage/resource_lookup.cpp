@@ -32,7 +32,7 @@ ResourceLookup accepted_lookup(Store& store, const std::string& project,
   }
   out.find = [find = out.find, accepted](RevisionName name) {
     for (const RevisionName& each : accepted) {
-      if (each.name == name.name) name = each;
+      if (each.name == name.name && name.revision == 0) name = each;
     }
     auto found = find(name);
     if (found) found->is_deleted = false;

@@ -113,7 +113,7 @@ int run(const std::string& path, int turns) {
                               const FlankContactBatchResults solved = scene.warm.results();
                               for (std::size_t i = 0; i < scene.conditions.size(); ++i) {
                                 sum += sensitivity
-                                           .at(scene.conditions[i], solved.film_load[i],
+                                           .at(scene.conditions[i], solved.ellipse_load[i],
                                                solved.contact_temperature[i])
                                            .friction.by[0];
                               }

@@ -106,6 +106,7 @@ TEST(Arguments, ComplaintsNameWhatIsMissingUnknownOrContradictory) {
       {"point -l a,b --speed 3", {"-l"}},
       {"point -l a --speed 3 --torque 3 --pinion-speed 3", {"--speed", "--torque"}},
       {"point -l a --speed 3 --sump 40,90", {"--sump"}},
+      {"explain a b --sump -20,40", {"--sump: '-20,40' has a comma; give one temperature"}},
       {"point -l a --speed 3 --surface run-in,new", {"--surface"}},
       {"curve -l a --speed 20 --last-speed 90", {"--speed", "--last-speed"}},
       {"curve -l a --compare warmer", {"'warmer'"}},
@@ -192,6 +193,7 @@ TEST(ModelFlags, CoverEveryFieldOfModelOptions) {
     EXPECT_NE(flag.description, "See ModelOptions.") << flag.names;
     if (flag.is_switch) flag.read({"true"}, complaints);
     if (flag.names == "--pressure-viscosity-index") flag.read({"houpert"}, complaints);
+    if (flag.names == "--model-preset") flag.read({"paper"}, complaints);
     if (flag.names == "--as-published") {
       flag.read({"eq17,eq20,eq22", "eq31", "eq43"}, complaints);
     }
@@ -277,6 +279,47 @@ TEST(Arguments, ACurveIsComputedOnEachSurfaceAndWithEachVariant) {
   EXPECT_EQ(simulations[2].inefficiency_curve().direction(), v1::SWEEP_DIRECTION_DOWN);
   EXPECT_FALSE(simulations[2].model_options().no_boundary_friction());
   EXPECT_EQ(simulations[3].surface(), "surfaces/new");
+}
+
+TEST(Arguments, VariantsChangeWhatAPresetDecides) {
+  v1::Simulation simulation;
+  ASSERT_TRUE(apply_variant("no-inlet-shear-heating", simulation));
+  EXPECT_TRUE(simulation.model_options().has_inlet_shear_heating());
+  EXPECT_FALSE(simulation.model_options().inlet_shear_heating());
+  ASSERT_TRUE(apply_variant("inlet-shear-heating", simulation));
+  EXPECT_TRUE(simulation.model_options().inlet_shear_heating());
+  EXPECT_FALSE(simulation.model_options().has_closed_load_sharing());
+  ASSERT_TRUE(apply_variant("paper", simulation));
+  EXPECT_EQ(simulation.model_options().preset(), v1::ModelOptions::PAPER);
+}
+
+TEST(Arguments, ASwitchMayBeSetToFalse) {
+  for (const char* flag : {"--inlet-shear-heating", "--inlet-shear-heating=false",
+                           "--closed-load-sharing=true", "--isothermal=false"}) {
+    EXPECT_TRUE(Outcome({"compare", "a", "--speed", "60", flag}).complaints.empty()) << flag;
+  }
+  EXPECT_TRUE(Outcome({"compare", "a", "--speed", "60", "--closed-load-sharing=maybe"})
+                  .complains_of("--closed-load-sharing: 'maybe'"));
+  EXPECT_TRUE(
+      Outcome({"compare", "a", "--speed", "60", "--model-preset", "paper"}).complaints.empty());
+}
+
+TEST(Arguments, AClassOfBaseOilHasAnyUsualSpelling) {
+  for (const char* word : {"group-iii", "GROUP-III", "Gr. III", "Group IV", "PAO", "pag"}) {
+    EXPECT_TRUE(Outcome({"lubricants", "create", "x", "--base-oil-class", word}).complaints.empty())
+        << word;
+  }
+  EXPECT_TRUE(Outcome({"lubricants", "create", "x", "--base-oil-class", "Group IX"})
+                  .complains_of("--base-oil-class: 'Group IX'"));
+}
+
+TEST(Arguments, ALubricantMayHaveBoundaryFrictionOfItsOwn) {
+  EXPECT_TRUE(Outcome({"lubricants", "create", "x", "--asperity-friction-coefficient", "0.11",
+                       "--tribofilm-shear-strength", "2MPa", "--asperity-friction-by-temperature",
+                       "40=0.12", "--asperity-friction-by-temperature", "100C=0.09"})
+                  .complaints.empty());
+  EXPECT_TRUE(Outcome({"lubricants", "create", "x", "--asperity-friction-by-temperature", "0.12"})
+                  .complains_of("--asperity-friction-by-temperature: '0.12'"));
 }
 
 TEST(Arguments, QuantitiesOfALubricantNeedNoUnit) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 #include <utility>
@@ -39,11 +40,14 @@ v1::UncertainFigure sample_figure(double value, double uncertainty, double solve
 
 TEST(ComparisonReport, AFigureHasTheErrorsOfInputsAndSolverApart) {
   EXPECT_EQ(with_errors(sample_figure(1.1783, 0.4199, 0.00042), "%"),
-            "1.18 % +/- 0.42 (inputs) +/- 0.0004 (solver)");
+            "1.18 %, +/- 0.82; solver error 0.00042 %");
   EXPECT_EQ(with_errors(sample_figure(53.91, 16.8, 0.04), "W"),
-            "54 W +/- 17 (inputs) +/- 0.04 (solver)");
+            "54 W, +/- 33; solver error 0.040 W");
   EXPECT_EQ(with_errors(sample_figure(1.1783, 0, 0.00042), "%"),
-            "1.17830 % +/- 0 (inputs) +/- 0.0004 (solver)");
+            "1.17830 %, uncertainty not stated; solver error 0.00042 %");
+  v1::UncertainFigure asymmetric = sample_figure(1.1783, 0.4199, 0.00042);
+  asymmetric.set_interval_maximum(3);
+  EXPECT_EQ(with_errors(asymmetric, "%"), "1.18 %, 0.36 to 3.00; solver error 0.00042 %");
 }
 
 v1::ComparePointsRequest sample_request() {
@@ -59,6 +63,7 @@ v1::ComparePointsResponse sample_comparison(v1::ComparedDifference::Verdict verd
   for (const char* name : {"lubricants/a@1", "lubricants/b@2"}) {
     v1::ComparedLubricant& lubricant = *out.add_lubricants();
     lubricant.set_lubricant_revision(name);
+    lubricant.set_uncertainty_stated(true);
     *lubricant.add_points()->mutable_inefficiency_energy_mean_percent() =
         sample_figure(1.2, 0.1, 0.001);
   }
@@ -97,11 +102,55 @@ TEST(ComparisonReport, OfTwoLubricantsHasDifferenceProbabilityAndShares) {
 
 TEST(ComparisonReport, DiffersForEachVerdict) {
   std::set<std::string> texts;
-  for (const auto verdict : {v1::ComparedDifference::LOWER, v1::ComparedDifference::HIGHER,
-                             v1::ComparedDifference::CANNOT_BE_TOLD_APART}) {
+  for (const auto verdict :
+       {v1::ComparedDifference::LOWER, v1::ComparedDifference::HIGHER,
+        v1::ComparedDifference::CANNOT_BE_TOLD_APART, v1::ComparedDifference::WITHHELD,
+        v1::ComparedDifference::UNCERTAINTY_NOT_STATED}) {
     texts.insert(comparison_report(sample_request(), sample_comparison(verdict)));
   }
-  EXPECT_EQ(texts.size(), 3U);
+  EXPECT_EQ(texts.size(), 5U);
+}
+
+TEST(ComparisonReport, AWithheldVerdictHasItsReasonAndNoProbability) {
+  v1::ComparePointsResponse response = sample_comparison(v1::ComparedDifference::WITHHELD);
+  response.set_not_included("Tooth contact only");
+  v1::ComparedLubricant& b = *response.mutable_lubricants(1);
+  for (v1::ComparedDifference* each : {b.mutable_mean_difference(), b.mutable_differences(0)}) {
+    each->set_lower_probability(std::nan(""));
+  }
+  v1::RangeWarning& warning = *b.mutable_points(0)->add_warnings();
+  warning.set_code("VISCOSITY_RANGE");
+  warning.set_summary("no oil");
+  warning.set_message("1e7 Pa s");
+  warning.set_level(v1::WARNING_LEVEL_WITHHOLDS_VERDICT);
+  const std::string text = in_one_line(comparison_report(sample_request(), response));
+  for (const char* part :
+       {"withheld: no oil", "Tooth contact only", "b@2 at 60 km/h: 1e7 Pa s. [VISCOSITY_RANGE]"}) {
+    EXPECT_TRUE(has_text(text, part)) << part << " in " << text;
+  }
+  EXPECT_FALSE(has_text(text, "nan"));
+  EXPECT_FALSE(has_text(text, "91 %"));
+  const std::vector<CsvLine> lines = read_csv(comparison_csv(sample_request(), response));
+  const auto column = [&lines](const std::string& name) {
+    const auto& header = lines.front().cells;
+    return static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin());
+  };
+  EXPECT_EQ(lines.at(2).cells.at(column("warnings")), "VISCOSITY_RANGE");
+  EXPECT_EQ(lines.at(2).cells.at(column("difference.verdict")), "WITHHELD");
+  EXPECT_EQ(lines.at(1).cells.at(column("warnings")), "");
+  const std::string svg = comparison_plot(sample_request(), response);
+  EXPECT_TRUE(has_text(svg, "[VISCOSITY_RANGE]"));
+  EXPECT_TRUE(has_text(svg, "url(#hatch"));
+}
+
+TEST(ComparisonReport, DoesNotCallAnUnstatedUncertaintyZero) {
+  v1::ComparePointsResponse response =
+      sample_comparison(v1::ComparedDifference::UNCERTAINTY_NOT_STATED);
+  response.mutable_lubricants(1)->set_uncertainty_stated(false);
+  *response.mutable_lubricants(1)->mutable_points(0)->mutable_inefficiency_energy_mean_percent() =
+      sample_figure(1.2, 0, 0.001);
+  const std::string text = in_one_line(comparison_report(sample_request(), response));
+  EXPECT_TRUE(has_text(text, " 1.2000 not stated 0.0010 ")) << text;
 }
 
 /// Three lubricants at two speeds and two sump temperatures. "near" cannot be told apart from
@@ -136,6 +185,7 @@ struct SampleRanking {
            v1::ComparedDifference::Verdict against_best) {
     v1::ComparedLubricant& out = *response.add_lubricants();
     out.set_lubricant_revision(revision);
+    out.set_uncertainty_stated(true);
     out.set_best_probability(probability);
     *out.mutable_mean_inefficiency_percent() = sample_figure(mean, 0.1, 0.001);
     v1::ComparedDifference difference;
@@ -144,6 +194,10 @@ struct SampleRanking {
     v1::InputShare& share = *difference.add_shares();
     share.set_input("lubricant.pressure_viscosity_coefficient_per_pascal");
     share.set_variance_share(0.96);
+    v1::DecidingInput& deciding = *difference.add_deciding_inputs();
+    deciding.set_input("lubricant.pressure_viscosity_coefficient_per_pascal");
+    deciding.set_standard_uncertainty(4e-10);
+    deciding.set_factor(0.2);
     if (mean > 1) *out.mutable_mean_difference_from_best() = difference;
     const bool is_first = response.lubricants_size() == 1;
     if (!is_first) *out.mutable_mean_difference() = difference;
@@ -162,15 +216,64 @@ TEST(ComparisonReport, RanksThreeLubricantsLeastLossFirst) {
   EXPECT_LT(row("good"), row("near"));
   EXPECT_LT(row("near"), row("bad"));
   const std::string text = in_one_line(table);
-  EXPECT_TRUE(has_text(text, "1 good@3 1.00 0.10 60 % ")) << text;
-  EXPECT_TRUE(has_text(text, "3 bad@1 2.00 0.10 0 % 1.00 0.80 to 1.20 ")) << text;
+  EXPECT_TRUE(has_text(text, "1 good@3 1.00 0.20 60 % ")) << text;
+  EXPECT_TRUE(has_text(text, "3 bad@1 2.00 0.20 0 % 1.00 0.80 to 1.20 ")) << text;
+}
+
+TEST(ComparisonReport, PutsALubricantWhoseVerdictIsWithheldLast) {
+  SampleRanking sample(false);
+  v1::ComparedLubricant& good = *sample.response.mutable_lubricants(2);
+  good.set_best_probability(std::nan(""));
+  *good.mutable_mean_difference_from_best() =
+      sample.response.lubricants(1).mean_difference_from_best();
+  good.mutable_mean_difference_from_best()->set_verdict(v1::ComparedDifference::WITHHELD);
+  sample.response.mutable_lubricants(1)->clear_mean_difference_from_best();
+  v1::RangeWarning& warning = *good.mutable_points(1)->add_warnings();
+  warning.set_code("THICK_FILM");
+  warning.set_summary("too thick");
+  warning.set_level(v1::WARNING_LEVEL_WITHHOLDS_VERDICT);
+  const std::string text = in_one_line(comparison_report(sample.request, sample.response));
+  EXPECT_TRUE(has_text(text, " 1 near@2 ")) << text;
+  EXPECT_TRUE(has_text(text, " 3 good@3 1.00 0.20 - ")) << text;
+  EXPECT_TRUE(has_text(text, "withheld: too thick"));
+}
+
+TEST(ComparisonReport, RanksARefusedLubricantLastWithTheReason) {
+  SampleRanking sample(false);
+  v1::ComparedLubricant& bad = *sample.response.mutable_lubricants(0);
+  bad.clear_mean_inefficiency_percent();
+  bad.mutable_mean_difference_from_best()->Clear();
+  for (v1::ComparedPoint& point : *bad.mutable_points()) {
+    point.Clear();
+    point.set_refusal_reason("BELOW_POUR_POINT");
+    point.set_refusal_message("too cold");
+  }
+  for (int i = 1; i < 3; ++i) {
+    sample.response.mutable_lubricants(i)->mutable_mean_difference()->Clear();
+  }
+  const std::string text = in_one_line(comparison_report(sample.request, sample.response));
+  EXPECT_TRUE(has_text(text, " - bad@1 - - - no figure: too cold (at ")) << text;
+  EXPECT_TRUE(has_text(text, "No difference of near@2 and bad@1: no figure of bad@1: too cold"))
+      << text;
+}
+
+TEST(ComparisonReport, ShowsNoProbabilityOfOneLubricantAlone) {
+  SampleRanking sample(false);
+  for (int i = 0; i < 2; ++i) {
+    sample.response.mutable_lubricants(i)->set_best_probability(std::nan(""));
+  }
+  sample.response.mutable_lubricants(2)->set_best_probability(1);
+  const std::string text = in_one_line(comparison_report(sample.request, sample.response));
+  EXPECT_TRUE(has_text(text, "1 good@3 1.00 0.20 - ")) << text;
+  EXPECT_FALSE(has_text(text, "probability that it is the best")) << text;
 }
 
 TEST(ComparisonReport, SaysWhatToMeasureIfTheBestIsNotSure) {
   const auto advice = [](bool is_tie) {
     const SampleRanking sample(is_tie);
     return has_text(in_one_line(comparison_report(sample.request, sample.response)),
-                    "near@2 from good@3: pressure viscosity coefficient");
+                    "near@2 from good@3: pressure viscosity coefficient of both with a "
+                    "standard uncertainty of 0.4 1/GPa (now 2)");
   };
   EXPECT_TRUE(advice(true));
   EXPECT_FALSE(advice(false));
@@ -305,9 +408,9 @@ TEST(CurveReport, ShowsTheUncertaintyOfTheInputsBesideTheSolversError) {
   const v1::Simulation curve = sample_curve("1", 1);
   const CurveUncertainty uncertainty = sample_uncertainty(curve);
   const std::string text = curve_report(curve, {}, &uncertainty);
-  EXPECT_TRUE(has_text(text, "+/- 0.37"));
+  EXPECT_TRUE(has_text(text, "+/- 0.73"));
   EXPECT_TRUE(has_text(text, "Measure it."));
-  EXPECT_FALSE(has_text(curve_report(curve, {}), "+/- 0.37"));
+  EXPECT_FALSE(has_text(curve_report(curve, {}), "+/- 0.73"));
 }
 
 TEST(CurvePlot, DrawsUncertaintiesAsBands) {
@@ -375,7 +478,9 @@ TEST(ExplanationReport, ListsTheSharesLargestFirstWithTheirSum) {
   const std::string text = explanation_report(sample.request, sample.response);
   const std::string table = text.substr(text.find("group of parameters"));
   EXPECT_LT(table.find("viscosity and its temperature law"), table.find("pressure response"));
-  EXPECT_TRUE(has_text(text, "a@1 1.000 +/- 0.100 %, b@2 1.200 +/- 0.100 %")) << text;
+  EXPECT_TRUE(
+      has_text(in_one_line(text), "a@1 1.000 (0.800 to 1.200) %, b@2 1.200 (1.000 to 1.400) %"))
+      << text;
   for (const char* part : {"0.200 ", "+0.300", "-0.100"}) EXPECT_TRUE(has_text(text, part)) << part;
   EXPECT_TRUE(has_text(text, "0.270 to 0.330")) << text;
   EXPECT_TRUE(has_text(text, "-0.050")) << "the interaction";

@@ -22,6 +22,7 @@
 #include "client/cpp/report/spectrum_report.h"
 #include "client/cpp/report/variant_report.h"
 #include "client/cpp/report/viscosity_report.h"
+#include "client/cpp/text/csv.h"
 #include "client/cpp/text/text.h"
 #include "tests/client/sample_simulations.h"
 
@@ -185,7 +186,7 @@ TEST(SpectrumPlot, DrawsALineForEachOrder) {
   keep("spectrum.svg", svg);
   EXPECT_TRUE(is_well_formed(svg));
   const std::string csv = spectrum_text(simulation, spectrum, OutputFormat::kCsv);
-  EXPECT_NE(csv.find("\n1,5,0.1\n"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("\n1,5,0.1,"), std::string::npos) << csv;
 }
 
 TEST(ViscosityPlot, DrawsALineForEachLubricantAndPressure) {
@@ -215,6 +216,29 @@ TEST(RigText, StatesResidualsOfMeasuredPointsAndRefusals) {
   EXPECT_NE(table.find("too cold"), std::string::npos);
 }
 
+TEST(RigText, StatesWarningsWithTheirPlacesInEveryForm) {
+  std::vector<RigRow> rows{rig_row(0.01, 0.11, false), rig_row(0.1, 0.08, false),
+                           rig_row(1, 0.05, false)};
+  for (const std::size_t i : {0U, 1U}) {
+    rows[i].warnings = {
+        {"FILM_RATIO", "thin", v1::WARNING_LEVEL_WITHHOLDS_VERDICT, "lambda is 0.1"}};
+  }
+  const std::string table = rig_text(rows, kStribeck, OutputFormat::kTable);
+  EXPECT_NE(table.find("at 0.01 to 0.1 m/s: lambda is 0.1. [FILM_RATIO]"), std::string::npos)
+      << table;
+  const std::vector<CsvLine> lines = read_csv(rig_text(rows, kStribeck, OutputFormat::kCsv));
+  const auto& header = lines.front().cells;
+  const auto column = static_cast<std::size_t>(std::find(header.begin(), header.end(), "warnings") -
+                                               header.begin());
+  EXPECT_EQ(lines.at(1).cells.at(column), "FILM_RATIO");
+  EXPECT_EQ(lines.at(3).cells.at(column), "");
+  const std::string json = rig_text(rows, kStribeck, OutputFormat::kJson);
+  EXPECT_NE(json.find("\"level\": \"WARNING_LEVEL_WITHHOLDS_VERDICT\""), std::string::npos) << json;
+  const std::string svg = rig_plot(rows, kStribeck, "m");
+  EXPECT_NE(svg.find("[FILM_RATIO]"), std::string::npos);
+  EXPECT_NE(svg.find("url(#hatch"), std::string::npos);
+}
+
 TEST(RigText, StatesUncertaintiesAndWhatCountsAsExact) {
   std::vector<RigRow> rows{rig_row(0.01, 0.11, false), rig_row(1, 0.05, false)};
   rows[0].bands["traction_coefficient"] = {0.0123, 0.09, 0.14};
@@ -223,7 +247,7 @@ TEST(RigText, StatesUncertaintiesAndWhatCountsAsExact) {
   const RigDraws draws{199, {{"lubricants/x@1", {"lubricant.relaxation_time_seconds"}}}};
   const std::string table = rig_text(rows, kStribeck, OutputFormat::kTable, draws);
   EXPECT_NE(table.find("+/-"), std::string::npos) << table;
-  EXPECT_NE(table.find("0.012"), std::string::npos) << table;
+  EXPECT_NE(table.find("0.025"), std::string::npos) << table;
   EXPECT_NE(table.find(" 199 "), std::string::npos) << table;
   EXPECT_NE(table.find("relaxation time"), std::string::npos) << table;
   const std::string csv = rig_text(rows, kStribeck, OutputFormat::kCsv, draws);
@@ -301,13 +325,16 @@ TEST(CurvePlot, BreaksTheLineWhereABranchEnds) {
 }
 
 /// Returns the curve with a warning in a range of speeds.
-v1::Simulation with_warning(v1::Simulation curve, const std::string& code, double from, double to) {
+v1::Simulation with_warning(v1::Simulation curve, const std::string& code, v1::WarningLevel level,
+                            double from, double to) {
   for (auto& point : *curve.mutable_result()->mutable_points()) {
     const double speed = point.speed_kilometres_per_hour();
     if (speed < from || speed > to) continue;
     auto& warning = *point.mutable_result()->add_warnings();
     warning.set_code(code);
     warning.set_message("told in full by the table");
+    warning.set_level(level);
+    warning.set_summary("summary of " + code);
   }
   return curve;
 }
@@ -332,24 +359,28 @@ TEST(CurvePlot, HatchesWhereALawIsOutsideItsRangeAndNamesItsCode) {
   const std::string plain = curve_plot({sample_curve("1", 1), sample_curve("2", 1.1)}, {});
   EXPECT_EQ(plain.find("hatch"), std::string::npos);
   const std::string svg = curve_plot(
-      {with_warning(sample_curve("1", 1), "PRESSURE", 100, 120), sample_curve("2", 1.1)}, {});
+      {with_warning(sample_curve("1", 1), "PRESSURE", v1::WARNING_LEVEL_CAUTION, 100, 120),
+       sample_curve("2", 1.1)},
+      {});
   keep("hatched.svg", svg);
   EXPECT_TRUE(is_well_formed(svg));
   // 690 pixels hold 120 km/h; the range reaches half way to 95 and to 125 km/h.
   EXPECT_NE(svg.find("width=\"143.75\" height=\"8\" fill=\"url(#hatch0)\""), std::string::npos);
-  EXPECT_NE(svg.find("100 to 120 km/h (1) [PRESSURE]"), std::string::npos);
+  EXPECT_NE(svg.find("summary of PRESSURE, 1 at 100 to 120 km/h [PRESSURE]"), std::string::npos);
 }
 
-TEST(CurvePlot, HatchesTheWholePanelAtAColdInlet) {
-  const std::string svg =
-      curve_plot({with_warning(sample_curve("1", 1), "COLD_INLET", 20, 140)}, {});
+TEST(CurvePlot, HatchesTheWholePanelWhereAVerdictIsWithheld) {
+  const std::string svg = curve_plot({with_warning(sample_curve("1", 1), "THICK_FILM",
+                                                   v1::WARNING_LEVEL_WITHHOLDS_VERDICT, 20, 140)},
+                                     {});
   keep("cold.svg", svg);
-  EXPECT_NE(svg.find("[COLD_INLET]"), std::string::npos);
+  EXPECT_NE(svg.find("[THICK_FILM]"), std::string::npos);
   EXPECT_NE(svg.find("width=\"690\" height=\"350\" fill=\"url(#hatch0)\""), std::string::npos);
 }
 
 TEST(CurvePlot, ShowsANoteOnTheMethodWithoutHatching) {
-  const std::string svg = curve_plot({with_warning(sample_curve("1", 1), "PERIOD", 60, 60)}, {});
+  const std::string svg = curve_plot(
+      {with_warning(sample_curve("1", 1), "PERIOD", v1::WARNING_LEVEL_NOTE, 60, 60)}, {});
   EXPECT_NE(svg.find("60 km/h [PERIOD]"), std::string::npos);
   EXPECT_EQ(svg.find("hatch"), std::string::npos);
 }
@@ -384,7 +415,7 @@ TEST(CurvePlot, VariantsOfAModelAreLabelledAndTheirDifferenceIsDrawnBelow) {
   simulations[1].mutable_model_options()->set_isothermal(true);
   simulations[2].mutable_inefficiency_curve()->set_direction(v1::SWEEP_DIRECTION_DOWN);
   EXPECT_EQ(variant_notes(simulations),
-            (std::vector<std::string>{"as corrected", "isothermal", "down-sweep"}));
+            (std::vector<std::string>{"recommended", "isothermal", "down-sweep"}));
   const std::string svg = curve_plot(simulations, {});
   EXPECT_NE(svg.find(">isothermal</text>"), std::string::npos);
   const auto variants = variants_of(simulations);

@@ -12,7 +12,7 @@ err_is_empty() { [ ! -s "$folder/err" ] || fail "tribodyn $asked: standard error
 
 echo "--- from three numbers to a curve"
 expect 0 lubricants create my-oil --kv40 73.3 --kv100 8.86 --density15 870
-out_has 'viscosity index +92\.4 ' 'SAE J306 grade +80' '14 parameters: 3 fitted' \
+out_has 'viscosity index +92\.4 ' 'SAE J306 grade +80' '[0-9]+ parameters: 3 fitted' \
   'tribodyn lubricants get my-oil' 'tribodyn curve --lubricant my-oil'
 expect 0 lubricants get my-oil
 out_has 'pressure viscosity coefficient +20\.5[0-9]* +1/GPa +5\.1 +assumed' 'thermal conductivity .* assumed'
@@ -391,6 +391,17 @@ expect 1 lubricants update data-sheet --pour-point -200
 err_has '--pour-point = -200 C.* -120 to 100 C .ASTM D97.'
 expect 0 lubricants list --filter 'pour_point_celsius <= 0' --output csv
 out_lines 2
+
+echo "--- boundary friction by temperature"
+expect 0 lubricants create projects/default/lubricants/by-temperature --like paper-fluid-1 \
+  --asperity-friction-by-temperature 40=0.12 --asperity-friction-by-temperature 100=0.08
+expect 4 diff paper-fluid-1 by-temperature --exit-code
+out_has 'at 40 C +- +0\.12' 'at 100 C +- +0\.08'
+expect 2 lubricants export paper-fluid-1 by-temperature --output csv --file by-temperature.csv
+err_has 'by-temperature.* JSON'
+[ ! -e by-temperature.csv ] || fail 'a table without the boundary friction was written'
+expect 1 compare 75W/90 paper-fluid-1
+! grep -q 'did you mean' "$folder/err" || fail 'a name that resembles none is suggested'
 cd "$here" || exit 1
 
 finish

@@ -204,6 +204,26 @@ TEST(RowTable, RestoresStatedAndMeasuredValues) {
   EXPECT_NE(text.find("150000 mPa s at -40 C; "), std::string::npos) << text;
 }
 
+TEST(RowTable, HoldsNoBoundaryFrictionByTemperature) {
+  std::vector<ResourcePointer> oils;
+  auto oil = std::make_unique<v1::Lubricant>();
+  oil->set_name("lubricants/by-temperature");
+  oil->add_asperity_friction_by_temperature()->set_asperity_friction_coefficient(0.1);
+  oils.push_back(std::move(oil));
+  std::string lost;
+  try {
+    row_table(oil_kind(), oils, lost);
+    FAIL();
+  } catch (const Failure& failure) {
+    EXPECT_NE(std::string(failure.what()).find("by-temperature. Export JSON"), std::string::npos);
+  }
+}
+
+TEST(RowTable, ReadsABarePourPointInDegreesCelsius) {
+  const RowTable table = read_row_table("name,pour_point\na,-30\n", "t.csv", oil_kind());
+  EXPECT_EQ(as_lubricant(table.resources.at(0)).pour_point_celsius(), -30);
+}
+
 TEST(RowTable, GivesALawOnlyToTheRowsThatStateOne) {
   const RowTable table = read_row_table(
       "name,kv40,kv100,glass viscosity [Pa s],glass_temperature_rise [K],glass pressure factor "

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "client/cpp/failure.h"
+#include "client/cpp/report/candidate_decisions.h"
 #include "client/cpp/report/screening_decisions.h"
 #include "client/cpp/report/screening_plot.h"
 #include "client/cpp/report/screening_report.h"
@@ -18,6 +19,7 @@
 namespace tribodyn::client {
 namespace {
 
+using testing::AllOf;
 using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -55,7 +57,7 @@ TEST(Candidates, OverrideParametersOfLubricantAndSurfaceInTheirUnits) {
   ASSERT_EQ(table.parameters.size(), 3U);
   EXPECT_EQ(table.parameters[0].path(), "lubricant.pressure_viscosity_coefficient_per_pascal");
   EXPECT_THAT(table.parameters[0].values, ElementsAre(DoubleNear(18e-9, 1e-20), 2e-8));
-  EXPECT_EQ(table.parameters[1].path(), "surface.asperity_friction_coefficient");
+  EXPECT_EQ(table.parameters[1].path(), "lubricant.asperity_friction_coefficient");
   EXPECT_THAT(table.parameters[1].values, ElementsAre(0.08, 0.1));
   EXPECT_THAT(table.parameters[2].values, ElementsAre(DoubleNear(5e-7, 1e-18), 4e-7));
   EXPECT_THAT(table.is_carried, ElementsAre(false, false, false, true));
@@ -72,6 +74,34 @@ TEST(Candidates, MayDifferInParametersOfThePressureViscosityLaw) {
             "lubricant.improved_yasutomi.glass_temperature_rise_kelvin");
   EXPECT_THAT(table.parameters[0].values, ElementsAre(220, 210));
   EXPECT_THAT(candidates_error(text), HasSubstr("glass temperature rise"));
+}
+
+TEST(Candidates, HaveTheBoundaryFrictionOfTheLubricantUnlessTheSurfaceIsNamed) {
+  CandidateBase base = base_of_tests();
+  const CandidateTable table = candidates(
+      "asperity_friction_coefficient,surface.asperity_friction_coefficient\n0.1,\n,0.2\n");
+  ASSERT_EQ(table.parameters.size(), 2U);
+  EXPECT_EQ(table.parameters[0].path(), "lubricant.asperity_friction_coefficient");
+  EXPECT_THAT(table.parameters[0].values, ElementsAre(0.1, 0.2));
+  EXPECT_EQ(table.parameters[1].path(), "surface.asperity_friction_coefficient");
+  EXPECT_EQ(table.parameters[1].header(), "surface.asperity_friction_coefficient");
+  EXPECT_THAT(table.parameters[1].values, ElementsAre(0.09, 0.2));
+  std::string wrong;
+  EXPECT_EQ(find_candidate_parameter("asperity-friction-coefficient", wrong),
+            table.parameters[0].field);
+  EXPECT_EQ(find_candidate_parameter("surface.asperity-friction-coefficient", wrong),
+            table.parameters[1].field);
+  base.lubricant.add_asperity_friction_by_temperature()->set_asperity_friction_coefficient(0.3);
+  EXPECT_TRUE(std::isnan(base_value(base, *table.parameters[0].field)));
+}
+
+TEST(Candidates, HaveNoNumbersOfALubricantThatAreNoParameters) {
+  const std::string text = "name,relaxation_time_seconds,pour_point (C)\na,1e-7,-30\n";
+  EXPECT_THAT(candidates_error(text),
+              AllOf(HasSubstr("column 'pour_point (C)'"), HasSubstr("--lubricants")));
+  EXPECT_EQ(candidates(text, {"pour_point (C)"}).parameters.size(), 1U);
+  EXPECT_THAT(candidates_error("name,asperity_friction_by_temperature\na,0.1\n"),
+              AllOf(HasSubstr("JSON"), HasSubstr("--asperity-friction-by-temperature")));
 }
 
 TEST(Candidates, WithoutNamesHaveTheNumbersOfTheirRows) {
@@ -118,8 +148,7 @@ TEST(Candidates, WithMeasurementsAreLubricantsForTheServer) {
                 .measurements()
                 .kinematic_viscosity_100_celsius_square_millimetres_per_second(),
             8.86);
-  ASSERT_EQ(table.parameters.size(), 1U);
-  EXPECT_EQ(table.parameters[0].path(), "surface.asperity_friction_coefficient");
+  EXPECT_EQ(table.lubricants[0].asperity_friction_coefficient(), 0.1);
 }
 
 TEST(Candidates, OutsideARangeAreRefusedWithTheLikelySlip) {
@@ -253,7 +282,7 @@ TEST(Screening, IsACampaignOfItsAcceptedCandidatesWithWhatIsCarriedAlong) {
   EXPECT_EQ(campaign.display_name(), "c.csv");
   EXPECT_EQ(campaign.lubricant(), "lubricants/x@1");
   ASSERT_EQ(campaign.candidate_columns_size(), 1);
-  EXPECT_EQ(campaign.candidate_columns(0).path(), "surface.asperity_friction_coefficient");
+  EXPECT_EQ(campaign.candidate_columns(0).path(), "lubricant.asperity_friction_coefficient");
   EXPECT_THAT(campaign.candidate_columns(0).values(), ElementsAre(0.1, 0.2));
   ASSERT_EQ(campaign.candidate_attributes_size(), 2);
   EXPECT_THAT(campaign.candidate_attributes(0).texts(), ElementsAre("a", "c"));
@@ -330,7 +359,7 @@ TEST(Screening, NamesTies) {
   const std::vector<CandidateFigures> ranking = ranked(screening);
   v1::RankCandidatesResponse answer;
   answer.set_compared(2);
-  answer.add_own_uncertain_parameters("surface.asperity_friction_coefficient");
+  answer.add_own_uncertain_parameters("lubricant.asperity_friction_coefficient");
   for (std::size_t i = 0; i < 2; ++i) {
     v1::RankedCandidate& each = *answer.add_candidates();
     each.set_candidate(static_cast<int>(ranking[i].candidate));
@@ -358,7 +387,7 @@ TEST(Screening, NamesTies) {
   answer.mutable_candidates(1)->clear_comparison();
   EXPECT_FALSE(ranking_confidence(ranking, candidates, answer, 0.95).of[1]);
   const RankingConfidence none = ranking_confidence(ranking, candidates, {}, 0.95);
-  EXPECT_TRUE(none.has_no_inputs);
+  EXPECT_TRUE(none.of.empty());
 }
 
 /// Twenty candidates whose inefficiency is 1 + friction / 0.1 + 0.5 if the additive is B, plus a
@@ -383,22 +412,93 @@ Screening linear_screening() {
   return out;
 }
 
-TEST(Screening, FindsTheMainEffectsOfNumbersAndWords) {
+v1::EstimateCandidateEffectsResponse sample_effects() {
+  v1::EstimateCandidateEffectsResponse out;
+  v1::CandidateEffect& effect = *out.add_effects();
+  effect.set_column("lubricant.asperity_friction_coefficient");
+  effect.set_from_candidate(0);
+  effect.set_to_candidate(1);
+  effect.set_effect(0.95);
+  effect.set_effect_minimum(0.9);
+  effect.set_effect_maximum(1);
+  effect.add_collinear_columns("lubricant.relaxation_time_seconds");
+  v1::ColumnWithoutEffect& left_out = *out.add_left_out();
+  left_out.set_column("surface.asperity_radius_metres");
+  left_out.set_reason(v1::ColumnWithoutEffect::CONSTANT);
+  return out;
+}
+
+TEST(Screening, ShowsTheEffectsOfTheServiceByTypedColumnsAndCells) {
   const Screening screening = linear_screening();
-  const auto effects = screening_effects(screening, ranked(screening));
-  ASSERT_TRUE(effects);
-  ASSERT_EQ(effects->effects.size(), 3U);
-  EXPECT_EQ(effects->effects[0].column, "asperity_friction_coefficient");
-  EXPECT_NEAR(effects->effects[0].effect, 0.95, 5e-3);  // over its range of 0.095
-  EXPECT_EQ(effects->effects[1].from, "A");
-  EXPECT_EQ(effects->effects[1].to, "B");
-  EXPECT_NEAR(effects->effects[1].effect, 0.5, 5e-3);
-  EXPECT_LT(effects->effects[2].low, 0);
-  EXPECT_GT(effects->effects[2].high, 0);
-  EXPECT_EQ(effects->degrees_of_freedom, 16);
-  const std::string report = effects_report(*effects);
-  EXPECT_THAT(report, HasSubstr("kind ("));
-  EXPECT_THAT(report, HasSubstr("long (20 "));
+  const ScreeningEffects effects = screening_effects(screening, {3, 0}, sample_effects());
+  ASSERT_EQ(effects.effects.size(), 1U);
+  EXPECT_EQ(effects.effects[0].column, "asperity_friction_coefficient");
+  EXPECT_EQ(effects.effects[0].from, screening.table.cells[3][0]);
+  EXPECT_EQ(effects.effects[0].to, screening.table.cells[0][0]);
+  const std::string report = effects_report(effects);
+  EXPECT_THAT(report, HasSubstr("lubricant.relaxation_time_seconds"));
+  EXPECT_THAT(report, HasSubstr("surface.asperity_radius_metres ("));
+}
+
+TEST(Screening, PutsWithheldCandidatesBehindTheOthersWithTheirWarnings) {
+  Screening screening = sample_screening();
+  screening.points[2].verdict_withheld = true;  // of b, which loses least
+  v1::RankCandidatesResponse answer;
+  answer.add_candidates()->set_candidate(1);
+  answer.mutable_candidates(0)->set_label("b");
+  v1::CandidateWarning& warning = *answer.add_warnings();
+  warning.set_code("THICK_FILM");
+  warning.set_summary("too thick");
+  warning.set_level(v1::WARNING_LEVEL_WITHHOLDS_VERDICT);
+  warning.add_candidates(1);
+  set_warnings({0, 1, 2}, answer, screening);
+  const std::vector<CandidateFigures> ranking = ranked(screening);
+  EXPECT_EQ(screening.table.names[ranking[0].candidate], "a");
+  EXPECT_EQ(screening.table.names[ranking[1].candidate], "b");
+  const std::string report = screening_report(screening, ranking, {}, 5, OutputFormat::kTable);
+  EXPECT_THAT(report, HasSubstr("withheld: too thick"));
+  EXPECT_THAT(report, HasSubstr("[THICK_FILM]"));
+  EXPECT_THAT(screening_report(screening, ranking, {}, 5, OutputFormat::kCsv),
+              testing::ContainsRegex("\n2,b,.*,true,THICK_FILM,\n"));
+  EXPECT_THAT(screening_report(screening, ranking, {}, 5, OutputFormat::kJson),
+              HasSubstr("\"warnings\": \"THICK_FILM\""));
+}
+
+TEST(CampaignRanking, MarksWithheldAndListsRefusedCandidates) {
+  v1::RankCandidatesResponse answer;
+  answer.set_ranked(2);
+  answer.set_withheld(1);
+  answer.set_compared(1);
+  answer.set_draws(199);
+  answer.set_not_included("Tooth contact only");
+  for (int i = 0; i < 2; ++i) {
+    v1::RankedCandidate& each = *answer.add_candidates();
+    each.set_candidate(i);
+    each.set_label(i == 0 ? "a" : "b");
+    each.set_value(1 - 0.5 * i);
+  }
+  answer.mutable_candidates(0)->mutable_comparison()->set_tied(true);
+  answer.mutable_candidates(1)->set_verdict_withheld(true);
+  v1::CandidateWarning& warning = *answer.add_warnings();
+  warning.set_code("THICK_FILM");
+  warning.set_summary("too thick");
+  warning.set_level(v1::WARNING_LEVEL_WITHHOLDS_VERDICT);
+  warning.add_candidates(1);
+  v1::RefusedCandidate& refused = *answer.add_refused_candidates();
+  refused.set_candidate(2);
+  refused.set_label("c");
+  refused.mutable_refusal()->set_reason("BELOW_POUR_POINT");
+  refused.mutable_refusal()->set_message("too cold");
+  const std::string table = ranking_answer_text({}, answer, OutputFormat::kTable);
+  for (const char* part : {"withheld: too thick", "c: too cold [BELOW_POUR_POINT]", "[THICK_FILM]",
+                           "Tooth contact only"}) {
+    EXPECT_THAT(table, HasSubstr(part));
+  }
+  const std::vector<CsvLine> lines = read_csv(ranking_answer_text({}, answer, OutputFormat::kCsv));
+  ASSERT_EQ(lines.size(), 4U);
+  EXPECT_THAT(lines[1].cells, testing::Contains("false"));
+  EXPECT_THAT(lines[2].cells, testing::Contains("THICK_FILM"));
+  EXPECT_THAT(lines[3].cells.back(), HasSubstr("BELOW_POUR_POINT"));
 }
 
 TEST(Screening, FindsTheParetoFrontOfAColumn) {
@@ -417,15 +517,16 @@ TEST(Screening, FindsTheParetoFrontOfAColumn) {
     EXPECT_THAT(failure.what(), HasSubstr("cost "));
   }
   EXPECT_THROW(screening_front(screening, ranking, "additive", false), Failure);
-  const auto effects = screening_effects(screening, ranking);
-  const std::string picture = screening_plot(screening, ranking, &front, &*effects);
-  EXPECT_THAT(picture, HasSubstr("additive: A to B"));
-  EXPECT_GT(picture.size(), screening_plot(screening, ranking, nullptr, &*effects).size());
+  const ScreeningEffects effects = screening_effects(screening, {0, 1}, sample_effects());
+  const std::string picture = screening_plot(screening, ranking, &front, &effects);
+  EXPECT_THAT(picture, HasSubstr("asperity_friction_coefficient: "));
+  EXPECT_GT(picture.size(), screening_plot(screening, ranking, nullptr, &effects).size());
   const std::string json = screening_report(
       screening, ranking, {}, 1, OutputFormat::kJson,
-      {{"pareto_front", front_json(screening, front)}, {"main_effects", effects_json(*effects)}});
+      {{"pareto_front", front_json(screening, front)}, {"main_effects", effects_json(effects)}});
   EXPECT_THAT(json, HasSubstr("\"pareto_front\": {\"column\": \"cost\", \"wants_most\": false"));
-  EXPECT_THAT(json, HasSubstr("{\"column\": \"additive\", \"from\": \"A\", \"to\": \"B\""));
+  EXPECT_THAT(json, HasSubstr("\"main_effects\": {"));
+  EXPECT_THAT(json, HasSubstr("{\"column\": \"asperity_friction_coefficient\", \"from\": "));
 }
 
 }  // namespace

@@ -24,6 +24,7 @@
 #include "client/cpp/text/output.h"
 #include "client/cpp/text/progress.h"
 #include "client/cpp/text/table.h"
+#include "client/cpp/text/warnings.h"
 #include "tests/client/sample_simulations.h"
 
 namespace tribodyn::client {
@@ -85,6 +86,15 @@ TEST(Text, ResourceNamesMayOmitTheirCollection) {
   EXPECT_EQ(resource_name("lubricants", "1"), "lubricants/1");
   EXPECT_EQ(resource_name("lubricants", "lubricants/1"), "lubricants/1");
   EXPECT_EQ(resource_id("simulations/x"), "x");
+}
+
+TEST(Text, ASlashThatBelongsToNoCollectionCutsNothingOffAName) {
+  EXPECT_EQ(resource_id("gearSets/axle@2"), "axle@2");
+  EXPECT_EQ(resource_id("projects/acme/lubricants/oil"), "oil");
+  for (const char* text : {"oil", "75W/90", "Shell 75W/77", "PAO/ester-1", "lubricants/75W/90",
+                           "projects/acme/75W/90", "projects/acme", "projects/", "/", ""}) {
+    EXPECT_EQ(resource_id(text), text);
+  }
 }
 
 TEST(Table, AlignsByDisplayWidth) {
@@ -343,7 +353,7 @@ TEST(CurveReport, PrintsErrorEstimatesBesideTheFigures) {
   auto& points = *curve.mutable_result()->mutable_points();
   points[0].mutable_result()->set_estimated_relative_error(3e-4);
   const std::string text = squeezed(curve_report(curve, {}));
-  EXPECT_TRUE(holds(text, " 20 1.350 +/- 0.0004 1.391 5.8 ")) << "in the unit of the figure";
+  EXPECT_TRUE(holds(text, " 20 1.350 0.0004 1.391 5.8 ")) << "in the unit of the figure";
   EXPECT_TRUE(holds(text, " 25 1.34 - 1.38 7.5 "));
   EXPECT_TRUE(holds(points_csv({curve}), ",estimated_relative_error,"));
   EXPECT_TRUE(holds(points_csv({curve}), ",3e-04,"));
@@ -377,7 +387,7 @@ TEST(PointReport, GivesLargeLossesInKilowatts) {
   EXPECT_TRUE(holds(text, " 0.05 kW"));
   EXPECT_EQ(text.find("e+"), std::string::npos);
   result.set_inefficiency_energy_mean_percent(1.1783);
-  EXPECT_TRUE(holds(squeezed(point_report(simulation, {})), "+/- 0.004"));
+  EXPECT_TRUE(holds(squeezed(point_report(simulation, {})), "solver error 0.004"));
 }
 
 TEST(Reports, BeginWithATorqueFarBeyondTheDataOfTheGearSet) {
@@ -402,21 +412,41 @@ TEST(Reports, BeginWithATorqueFarBeyondTheDataOfTheGearSet) {
   EXPECT_EQ(largest_torque({}), 0);
 }
 
+TEST(Warnings, NameWhatHasThemWhere) {
+  WarningCollector collector({"20", "40", "60"}, "km/h", "all speeds", {"a", "b"});
+  const ShownWarning thick{"THICK", "thick", v1::WARNING_LEVEL_WITHHOLDS_VERDICT, "20 um"};
+  const ShownWarning note{"PERIOD", "period", v1::WARNING_LEVEL_NOTE, "2 cycles"};
+  for (const std::size_t place : {0U, 1U, 2U}) collector.add(note, 0, place);
+  collector.add(thick, 0, 0);
+  collector.add(thick, 0, 2);
+  collector.add(thick, 1, 1);
+  const std::vector<ShownWarning> warnings = collector.warnings();
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_EQ(warnings[0].where, "a at 20 and 60 km/h; b at 40 km/h");
+  EXPECT_EQ(warnings[1].where, "a at all speeds");
+  EXPECT_EQ(codes_of(warnings), "THICK PERIOD");
+  EXPECT_EQ(withheld_by(warnings), "thick");
+  EXPECT_EQ(json_with("{\n}\n", "warnings", "[]"), "{\n \"warnings\": []\n}\n");
+}
+
 TEST(Reports, NameEachWarningOnceWithItsSpeeds) {
   v1::Simulation curve = sample_curve("2", 1);
   for (auto& point : *curve.mutable_result()->mutable_points()) {
     if (point.speed_kilometres_per_hour() > 30) continue;
     auto& warning = *point.mutable_result()->add_warnings();
-    warning.set_code("COLD_INLET");
-    warning.set_message("inlet at 0 C");
+    warning.set_code("THICK_FILM");
+    warning.set_summary("thick film");
+    warning.set_level(v1::WARNING_LEVEL_WITHHOLDS_VERDICT);
+    warning.set_message("film at " + std::to_string(point.speed_kilometres_per_hour()));
   }
   auto& period = *curve.mutable_result()->mutable_points(9)->mutable_result()->add_warnings();
   period.set_code("PERIOD");
   period.set_message("repeats after 2");
   const std::string text = one_line(curve_report(curve, {}));
-  EXPECT_TRUE(holds(text, "20 to 30 km/h. At 20 km/h: inlet at 0 C. [COLD_INLET]"));
+  EXPECT_TRUE(
+      holds(text, "Thick film, at 20 to 30 km/h: film at 20.000000 (at 20 km/h). [THICK_FILM]"));
   EXPECT_TRUE(holds(text, "65 km/h: repeats after 2. [PERIOD]"));
-  EXPECT_EQ(text.find("[COLD_INLET]"), text.rfind("[COLD_INLET]"));
+  EXPECT_EQ(text.find("[THICK_FILM]"), text.rfind("[THICK_FILM]"));
 }
 
 /// Returns half a unit of the last digit of a number. Zeros at the end of a whole number count as
@@ -469,11 +499,12 @@ TEST(Precision, FiguresWithoutEstimateHaveThreeDigits) {
 
 TEST(HistoryReport, HasASummaryAndCsv) {
   EXPECT_TRUE(holds(history_summary(sample_history()), "flank_load_newtons_flank_2"));
-  const auto lines = lines_of(history_csv(sample_history()));
+  const auto lines = lines_of(history_csv(sample_history(), "FILM_RATIO PERIOD"));
   ASSERT_EQ(lines.size(), 385U);
   EXPECT_EQ(lines[0],
             "time_seconds,mesh_force_newtons,flank_load_newtons_flank_0,"
-            "flank_load_newtons_flank_1,flank_load_newtons_flank_2");
+            "flank_load_newtons_flank_1,flank_load_newtons_flank_2,warnings");
+  EXPECT_TRUE(lines[1].ends_with(",FILM_RATIO PERIOD"));
 }
 
 TEST(HistoryReport, OmitsTheTemperatureOfAFlankWithoutLoad) {

@@ -141,6 +141,7 @@ TEST(ContactSensitivity, AgreesWithCentralDifferencesOnRandomStates) {
     c.options.newtonian = n % 10 == 5;
     c.options.no_limiting_shear_stress = n % 10 == 7;
     c.options.inlet_shear_heating = n % 4 >= 2;
+    c.options.closed_load_sharing = n % 7 < 4;
     if (n % 10 == 9) c.options.pressure_viscosity_index = PressureViscosityIndex::kHoupert;
     if (c.model().solve(c.conditions).status != ContactStatus::kOk) continue;
     expect_like_differences(Contact(c), "state " + std::to_string(n) + ", " + draw.seed(),
@@ -163,6 +164,23 @@ TEST(ContactSensitivity, AgreesWithCentralDifferencesInTheGear) {
       c.sump_temperature = sump;
       expect_like_differences(Contact(c), std::to_string(load) + " N", comparison);
     }
+  }
+  EXPECT_LT(comparison.inconclusive, 0.1 * comparison.compared);
+}
+
+TEST(ContactSensitivity, AgreesWithCentralDifferencesWhereAFilmSupportsAPartOfItsLoad) {
+  Comparison comparison;
+  for (const double slower : {0.3, 0.03, 0.001}) {
+    ContactCase c;
+    c.options = recommended_model();
+    c.sump_temperature = 363.15;
+    for (double* each : {&c.conditions.velocity_1_x, &c.conditions.velocity_1_y,
+                         &c.conditions.velocity_2_x, &c.conditions.velocity_2_y}) {
+      *each *= slower;
+    }
+    const ContactSolution s = c.model().solve(c.conditions);
+    EXPECT_LT(s.film_load, s.ellipse_load);
+    expect_like_differences(Contact(c), std::to_string(s.film_ratio), comparison);
   }
   EXPECT_LT(comparison.inconclusive, 0.1 * comparison.compared);
 }
@@ -229,7 +247,7 @@ TEST(ContactSensitivity, OfABatchsSolutionIsThatOfTheScalarKernel) {
   ASSERT_EQ(batch.solve(arrays.geometries(), 0, 1, arrays.conditions(), arrays.results()), 0U);
   const ContactSensitivityModel sensitivity(model);
   const ContactSensitivity own = sensitivity.at(c.conditions);
-  const ContactSensitivity given = sensitivity.at(c.conditions, *arrays.results().film_load,
+  const ContactSensitivity given = sensitivity.at(c.conditions, *arrays.results().ellipse_load,
                                                   *arrays.results().contact_temperature);
   for (const Output& output : outputs()) {
     for (int i = 0; i < kContactInputs; ++i) {
@@ -254,12 +272,12 @@ double difference_side_by_side(const ContactCase& c, InstructionSet set) {
   DifferentiatedContacts contacts;
   contacts.clear(1);
   contacts.add(arrays.geometries(), 0, c.conditions,
-               {*results.film_load, *results.contact_temperature, *results.mean_shear_stress,
+               {*results.ellipse_load, *results.contact_temperature, *results.mean_shear_stress,
                 *results.limiting_stress_area_share});
   batch.differentiate(contacts);
   const ContactSensitivityModel sensitivity(model);
   const ContactSensitivity expected =
-      sensitivity.at(c.conditions, *results.film_load, *results.contact_temperature);
+      sensitivity.at(c.conditions, *results.ellipse_load, *results.contact_temperature);
   EXPECT_EQ(expected.status, SensitivityStatus::kOk);
   Contact copy(c);
   const auto inputs = contact_inputs(copy.parameters, copy.conditions);
@@ -312,6 +330,7 @@ TEST(ContactSensitivity, IsTheSameSideBySideOnRandomStates) {
     c.options.no_limiting_shear_stress = n % 10 == 7;
     c.options.no_boundary_friction = n % 20 == 9;
     c.options.inlet_shear_heating = n % 4 >= 2;
+    c.options.closed_load_sharing = n % 7 < 4;
     if (n % 5 < 2) {  // a rim on the limit
       c.lubricant.limiting_shear_stress_at_zero_pressure =
           n % 5 == 0 ? 0 : draw.log_between(1, 1e6);

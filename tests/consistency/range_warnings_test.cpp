@@ -3,28 +3,35 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/study/operating_point.h"
+#include "core/study/screening.h"
+#include "core/study/warning_kinds.h"
 #include "tests/support/reference_scene.h"
 
 namespace tribodyn {
 namespace {
 
-/// A result that stays inside every range, and its scene.
+/// Figures that stay inside every range, and their scene.
 struct Quiet {
   Scene scene = reference_scene();
-  PointResult result;
+  RangeFigures figures;
 
   Quiet() {
     scene.fluid_grounds = {FluidGrounds::TemperatureRange{283.15, 413.15},
                            FluidGrounds::LimitingStress::kMeasuredAtForty};
-    result.contact_temperature = {340, 350, 370};
-    result.maximum_pressure = {0.5e9, 0.8e9, 1.1e9};
-    result.film_ratio = {0.8, 1, 1.2};
-    result.settled = true;
-    result.period_in_mesh_cycles = 1;
+    figures.contact_temperature = 370;
+    figures.maximum_pressure = 1.1e9;
+    figures.film_ratio = 0.8;
+    figures.film_thickness = 1e-6;
+    figures.inlet_viscosity = 0.05;
   }
   /// The sentence under a code; empty where there is none.
   std::string sentence(const std::string& code) const {
-    for (const RangeWarning& each : range_warnings(scene, result)) {
+    for (const RangeWarning& each : range_warnings(scene, figures)) {
       if (each.code == code) return each.sentence;
     }
     return {};
@@ -33,7 +40,7 @@ struct Quiet {
 
 TEST(RangeWarnings, AreNoneInsideEveryRange) {
   const Quiet quiet;
-  EXPECT_TRUE(range_warnings(quiet.scene, quiet.result).empty());
+  EXPECT_TRUE(range_warnings(quiet.scene, quiet.figures).empty());
 }
 
 TEST(RangeWarnings, SpeakOfTheTemperaturesAtWhichThisLubricantWasMeasured) {
@@ -46,7 +53,7 @@ TEST(RangeWarnings, SpeakOfTheTemperaturesAtWhichThisLubricantWasMeasured) {
   EXPECT_NE(own.sentence("VISCOSITY_TEMPERATURE"), "") << "the inlet is colder";
   own.scene.fluid_grounds.viscosity_measured = {233.15, 373.15};
   EXPECT_EQ(own.sentence("VISCOSITY_TEMPERATURE"), "");
-  own.result.contact_temperature.maximum = 373.16;
+  own.figures.contact_temperature = 373.16;
   EXPECT_NE(own.sentence("VISCOSITY_TEMPERATURE"), "") << "the contact is hotter";
   own.scene.fluid_grounds.viscosity_measured.reset();
   EXPECT_EQ(own.sentence("VISCOSITY_TEMPERATURE"), "") << "nobody knows where it was measured";
@@ -55,7 +62,7 @@ TEST(RangeWarnings, SpeakOfTheTemperaturesAtWhichThisLubricantWasMeasured) {
 TEST(RangeWarnings, RoundTemperaturesToThreeDigits) {
   Quiet cold;
   cold.scene.sump_temperature = 273.15 - 25;
-  cold.result.contact_temperature = {268.15, 280, 295.8334};
+  cold.figures.contact_temperature = 295.8334;
   EXPECT_EQ(cold.sentence("VISCOSITY_TEMPERATURE"),
             "the film is at -5 to 22.7 C; the viscosity of this lubricant was measured from 10 to "
             "140 C and is extrapolated beyond");
@@ -64,7 +71,7 @@ TEST(RangeWarnings, RoundTemperaturesToThreeDigits) {
 TEST(RangeWarnings, NamePressuresOnBothSides) {
   Quiet place;
   const auto said = [&place](double largest) {
-    place.result.maximum_pressure.maximum = largest;
+    place.figures.maximum_pressure = largest;
     return place.sentence("PRESSURE");
   };
   EXPECT_EQ(said(0.85e9), "");
@@ -77,25 +84,84 @@ TEST(RangeWarnings, NamePressuresOnBothSides) {
 }
 
 TEST(RangeWarnings, NameRadiiBeyondTheFitsOfEqs21And22WhereTheFitsAreUsed) {
-  for (const bool along_x : {false, true}) {
+  Quiet place;
+  place.figures.radius_ratio = 120;
+  EXPECT_NE(place.sentence("RADIUS_RATIO").find("120"), std::string::npos);
+  place.scene.options.hertz_solution = HertzSolution::kExact;
+  EXPECT_EQ(place.sentence("RADIUS_RATIO"), "");
+}
+
+TEST(RangeWarnings, SpeakOfTheInletByWhatItsHeatDoesToTheFilm) {
+  for (const bool with_heating : {false, true}) {
     Quiet place;
-    ToothContactTables& tables = place.scene.gear_set.tables;
-    (along_x ? tables.radius_x : tables.radius_y)[1][40] =
-        120 * (along_x ? tables.radius_y : tables.radius_x)[1][40];
-    EXPECT_EQ(place.sentence("RADIUS_RATIO"),
-              "the ratio of a contact's radii reaches 120; the fits of eqs 21 and 22 hold from 1 "
-              "to 100 (exact_hertz has no such limit)");
-    place.scene.options.hertz_solution = HertzSolution::kExact;
-    EXPECT_EQ(place.sentence("RADIUS_RATIO"), "");
-    place.scene.options.hertz_solution = HertzSolution::kSimplified;
-    tables.load_share[1][40] = 0;
-    EXPECT_EQ(place.sentence("RADIUS_RATIO"), "") << "a flank that carries nothing";
+    place.scene.options.inlet_shear_heating = with_heating;
+    place.scene.sump_temperature = 223.15;  // however cold
+    const auto has = [&place](double factor, const char* code) {
+      place.figures.inlet_heating_factor = factor;
+      return !place.sentence(code).empty();
+    };
+    EXPECT_FALSE(has(0.951, "INLET_HEATING_LEFT_OUT"));
+    EXPECT_EQ(has(0.949, "INLET_HEATING_LEFT_OUT"), !with_heating);
+    EXPECT_FALSE(has(0.501, "STARVATION"));
+    EXPECT_EQ(has(0.499, "STARVATION"), with_heating);
   }
+}
+
+TEST(RangeWarnings, WithholdTheVerdictWhereNoFigureDecides) {
+  Quiet place;
+  const auto withholds = [&place] {
+    return any_withholds_verdict(range_warnings(place.scene, place.figures));
+  };
+  EXPECT_FALSE(withholds());
+  for (const auto& change : std::vector<std::function<void(RangeFigures&)>>{
+           [](RangeFigures& f) { f.film_thickness = 10.1e-6; },
+           [](RangeFigures& f) { f.inlet_viscosity = 1.1e6; },
+           [](RangeFigures& f) { f.inlet_viscosity = 0.9e-4; },
+           [](RangeFigures& f) { f.inlet_heating_factor = 0.9; },
+           [](RangeFigures& f) { f.settled = false; }}) {
+    place.figures = Quiet().figures;
+    change(place.figures);
+    EXPECT_TRUE(withholds());
+  }
+}
+
+TEST(RangeWarnings, AreThoseOfTheResultWhereAnOrbitIsScreened) {
+  for (const double celsius : {-20.0, 40.0, 90.0}) {
+    for (const double kilometres_per_hour : {20.0, 60.0, 120.0}) {
+      Scene scene = reference_scene();
+      scene.sump_temperature = celsius + 273.15;
+      PreparedScene prepared(scene);
+      OperatingCondition condition;
+      condition.vehicle_speed = kilometres_per_hour / 3.6;
+      std::vector<std::string> of_result, of_figures;
+      for (const RangeWarning& each : solve_prepared_point(prepared, condition, {}).warnings) {
+        of_result.push_back(each.code);
+      }
+      for (const RangeWarning& each : screen_point(prepared, condition, {}).warnings) {
+        of_figures.push_back(each.code);
+      }
+      EXPECT_EQ(of_figures, of_result) << celsius << " C, " << kilometres_per_hour << " km/h";
+    }
+  }
+}
+
+TEST(RangeWarnings, ThinTheFilmAsMuchAsTheModelDoesAtItsWorstFlank) {
+  Scene scene = reference_scene();
+  scene.sump_temperature = 263.15;
+  OperatingCondition condition;
+  condition.vehicle_speed = 100 / 3.6;
+  const PointResult without = solve_operating_point(scene, condition, {});
+  scene.options.inlet_shear_heating = true;
+  const PointResult with = solve_operating_point(scene, condition, {});
+  EXPECT_NEAR(with.inlet_heating_factor, without.inlet_heating_factor, 0.01);
+  const double mean = with.film_ratio.mean / without.film_ratio.mean;
+  EXPECT_LT(with.inlet_heating_factor, mean);
+  EXPECT_GT(with.inlet_heating_factor, 0.6 * mean);
 }
 
 TEST(RangeWarnings, SayWhereTheLimitingStressComesFrom) {
   Quiet place;
-  place.result.limiting_stress_area_share = 0.6666;
+  place.figures.limiting_stress_area_share = 0.6666;
   using Origin = FluidGrounds::LimitingStress;
   const auto said = [&place](Origin origin) {
     place.scene.fluid_grounds.limiting_stress = origin;

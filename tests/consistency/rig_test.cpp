@@ -175,7 +175,7 @@ TEST(Rig, AgreesWithTheYardstick) {
             const RigPoint p = rig.at({load, speed, slide});
             const yardstick::ContactResult y = theirs.evaluate(
                 {load, 0.0127, 0.05, speed * (1 + slide / 2), 0, speed * (1 - slide / 2), 0});
-            const double creep = speed * std::abs(slide) / (speed * std::abs(slide) + 1e-4);
+            const double creep = std::abs(slide) / (std::abs(slide) + 1e-4);
             const double friction = y.viscous_friction + creep * y.boundary_friction;
             EXPECT_NEAR(p.traction_coefficient * load / std::copysign(friction, slide), 1, 1e-9);
             EXPECT_NEAR(p.boundary_friction_share * friction / (creep * y.boundary_friction), 1,
@@ -207,7 +207,7 @@ TEST(Rig, TractionPassesThroughZeroAtZeroSliding) {
     EXPECT_NEAR(rig.at({38, 0.05, -slide}).traction_coefficient / -traction, 1, 1e-6);
     before = traction;
   }
-  EXPECT_LT(rig.at({38, 0.05, 1e-9}).traction_coefficient, 1e-6);
+  EXPECT_LT(rig.at({38, 0.05, 1e-9}).traction_coefficient, 3e-6);
 }
 
 TEST(Rig, MinimumFilmOfACircularContactIsItsShareOfTheCentral) {

@@ -37,8 +37,9 @@ constexpr Row kRows[] = {
 constexpr char kHead[] = R"(# What moves the inefficiency
 
 Elasticities of the energy-mean inefficiency: a parameter that rises by 1 % moves it by so many percent.
-Fluid 1 of the paper in the reference axle, run-in surface, sump at 40 C, cruise on the level. At 75 km/h
-the flanks part. They are exact derivatives (`tribodyn sensitivities`); a test computes this table.
+Fluid 1 of the paper in the reference axle, run-in surface, sump at 40 C, cruise on the level, recommended
+model. At 75 km/h the flanks part. They are exact derivatives (`tribodyn sensitivities`); a test computes
+this table.
 
 | parameter | 20 km/h | 40 km/h | 60 km/h | 75 km/h | 100 km/h | 140 km/h |
 |---|---:|---:|---:|---:|---:|---:|
@@ -47,7 +48,8 @@ the flanks part. They are exact derivatives (`tribodyn sensitivities`); a test c
 /// By row of kRows and speed.
 std::vector<std::vector<double>> elasticities() {
   std::vector<std::vector<double>> out(std::size(kRows));
-  const Scene scene = reference_scene();
+  Scene scene = reference_scene();
+  scene.options = recommended_model();
   PointOptions options;
   options.tolerance = 1e-5;
   options.model = PointModel::kFull;

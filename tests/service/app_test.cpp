@@ -8,6 +8,7 @@
 
 #include "core/periodic/orbit_sensitivity.h"
 #include "core/study/history.h"
+#include "core/study/warning_kinds.h"
 #include "google/rpc/error_details.pb.h"
 #include "proto/field_behavior.h"
 #include "server/application/contacts.h"
@@ -527,7 +528,7 @@ TEST_F(AppTest, ErrorDetailsAreLimitedAndCountTheOmittedViolations) {
             std::to_string(500 - (bad->field_violations_size() - 1)) + " more violations");
 }
 
-/// Those of the numbers that the model uses.
+/// Those of the numbers that every contact states.
 TEST_F(AppTest, AllViolationsOfAContactFitIntoOneError) {
   v1::EvaluateContactRequest request;
   const auto spoil = [](google::protobuf::Message* message) {
@@ -535,7 +536,7 @@ TEST_F(AppTest, AllViolationsOfAContactFitIntoOneError) {
     for (int i = 0; i < descriptor.field_count(); ++i) {
       const auto* field = descriptor.field(i);
       if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE &&
-          !is_documentary(*field)) {
+          !may_be_unset(*field)) {
         message->GetReflection()->SetDouble(message, field, -1.2345678901234567e300);
       }
     }
@@ -650,6 +651,15 @@ TEST(SimulationViews, TheLongestCurveFitsIntoAnAnswerInFull) {
   v1::PointResult& most = *point.mutable_result();
   fill(most, 3);  // flanks
   most.clear_sensitivities();
+  v1::RangeWarning& longest = *most.mutable_warnings(0);
+  longest.clear_summary();
+  longest.clear_code();
+  for (const WarningKind& each : warning_kinds()) {
+    if (each.summary.size() > longest.summary().size()) {
+      longest.set_summary(std::string(each.summary));
+    }
+    if (each.code.size() > longest.code().size()) longest.set_code(std::string(each.code));
+  }
   while (most.warnings_size() < 5) *most.add_warnings() = v1::RangeWarning(most.warnings(0));
   while (most.contact_losses_size() < 20) {
     *most.add_contact_losses() = v1::ContactLoss(most.contact_losses(0));

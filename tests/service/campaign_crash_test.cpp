@@ -126,7 +126,7 @@ TEST_F(CampaignCrashTest, ACampaignOfARigContinuesAtTheMissingRowsWithTheSameBit
   ASSERT_TRUE(
       eventually([&] { return get_campaign(undisturbed).state() == v1::Campaign::SUCCEEDED; }));
   const std::string expected = bits(undisturbed);
-  EXPECT_EQ(expected.size(), std::size_t{300'000} * 11 * sizeof(double));
+  EXPECT_EQ(expected.size(), std::size_t{300'000} * 13 * sizeof(double));
   EXPECT_TRUE(bits(name) == expected);
 }
 

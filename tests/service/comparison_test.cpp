@@ -293,7 +293,8 @@ TEST(ContactUncertainty, IsThatOfARecomputationWithTheMovedInput) {
     EXPECT_GT(each.value().interval_maximum(), value);
   }
   EXPECT_EQ(found, 3);
-  const auto without = evaluate_contact(request, seed<v1::Lubricant>("lubricants/paper-fluid-1"));
+  const auto without =
+      evaluate_contact(request, exact_seed<v1::Lubricant>("lubricants/paper-fluid-1"));
   EXPECT_EQ(without.uncertainties_size(), 0);
   EXPECT_THAT(without.inputs_without_uncertainty(),
               testing::Contains("lubricant.relaxation_time_seconds"));
@@ -323,7 +324,7 @@ TEST(ShearedLubricant, HasItsViscositiesTimesTheLossOfTheShearTest) {
   ASSERT_TRUE(fit) << "draws of its inputs start from the fit";
   EXPECT_NEAR(fit->viscosity_prefactor / sheared->vogel_viscosity_prefactor_pascal_seconds(), 1,
               1e-9);
-  auto stated = seed<v1::Lubricant>("lubricants/paper-fluid-1");
+  auto stated = exact_seed<v1::Lubricant>("lubricants/paper-fluid-1");
   stated.mutable_measurements()
       ->set_sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second(14);
   EXPECT_LT(sheared_lubricant(stated)->vogel_viscosity_prefactor_pascal_seconds(),

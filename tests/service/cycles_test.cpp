@@ -81,6 +81,7 @@ v1::EvaluateCycleRequest unsteady_request(double degrees) {
 TEST(EvaluateCycle, OfTheNedcIsThePointByPointIntegration) {
   v1::EvaluateCycleRequest request =
       nedc_request({"lubricants/paper-fluid-1", "lubricants/paper-fluid-2"});
+  request.mutable_model_options()->set_preset(v1::ModelOptions::PAPER);
   const v1::EvaluateCycleResponse out = run_cycle(request);
   request.set_point_by_point(true);
   const v1::EvaluateCycleResponse by_piece = run_cycle(request);

@@ -24,6 +24,7 @@ v1::ComparePointsRequest curve_request(const std::vector<double>& speeds,
                                        const std::vector<std::string>& lubricants) {
   auto out = request_at(speeds, lubricants);
   out.set_draws(99);
+  out.mutable_model_options()->set_closed_load_sharing(false);
   return out;
 }
 

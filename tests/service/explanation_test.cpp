@@ -85,7 +85,7 @@ double recomputed_inefficiency(const v1::Lubricant& lubricant, double kilometres
 
 /// Lubricants that differ in four groups, two of which neither viscosity nor pressure sets.
 Fluids different_fluids() {
-  auto b = seed<v1::Lubricant>(kOtherFluid);
+  auto b = exact_seed<v1::Lubricant>(kOtherFluid);
   b.set_relaxation_time_seconds(3 * b.relaxation_time_seconds());
   b.set_limiting_shear_stress_coefficient(0.8 * b.limiting_shear_stress_coefficient());
   Fluids out;
@@ -140,7 +140,7 @@ TEST(ExplainPoints, AnExchangedGroupHasTheEffectOfANewSimulation) {
     out.ParseFromString(fluids.lookup().find({"lubricants/b", 0})->body);
     return out;
   }();
-  auto first = seed<v1::Lubricant>(kOneFluid);
+  auto first = exact_seed<v1::Lubricant>(kOneFluid);
   auto swapped = first;
   swapped.set_pressure_viscosity_coefficient_per_pascal(
       b.pressure_viscosity_coefficient_per_pascal());
@@ -167,7 +167,7 @@ TEST(ExplainPoints, AnExchangedGroupHasTheEffectOfANewSimulation) {
 TEST(ExplainPoints, AnotherSurfaceIsTheShareOfTheBoundaryFilm) {
   auto request = explanation_of(kOneFluid, kOneFluid, {30});
   request.set_other_surface("surfaces/film");
-  auto film = seed<v1::Surface>("surfaces/run-in");
+  auto film = exact_seed<v1::Surface>("surfaces/run-in");
   film.set_tribofilm_shear_strength_pascals(2 * film.tribofilm_shear_strength_pascals());
   film.set_asperity_friction_coefficient(1.5 * film.asperity_friction_coefficient());
   Fluids fluids;
@@ -180,7 +180,7 @@ TEST(ExplainPoints, AnotherSurfaceIsTheShareOfTheBoundaryFilm) {
 }
 
 TEST(ExplainPoints, ALubricantDiffersFromItselfAfterTheShearTestByItsViscosity) {
-  auto oil = seed<v1::Lubricant>(kOneFluid);
+  auto oil = exact_seed<v1::Lubricant>(kOneFluid);
   oil.mutable_measurements()
       ->set_sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second(14);
   Fluids fluids;
@@ -196,12 +196,13 @@ TEST(ExplainPoints, ALubricantDiffersFromItselfAfterTheShearTestByItsViscosity) 
   EXPECT_THAT(explanation_violations(request), testing::StartsWith("other_sheared_lubricant: "));
 }
 
+v1::Lubricant with_uncertain_shear(const char* name) {
+  auto out = exact_seed<v1::Lubricant>(name);
+  set_uncertainty(out, "relaxation_time_seconds", 0.5 * out.relaxation_time_seconds());
+  return out;
+}
+
 TEST(ExplainPoints, AnUncertainGroupThatIsEqualHasAShareOfZeroWithAnUncertainty) {
-  const auto with_uncertain_shear = [](const char* name) {
-    auto out = seed<v1::Lubricant>(name);
-    set_uncertainty(out, "relaxation_time_seconds", 0.5 * out.relaxation_time_seconds());
-    return out;
-  };
   Fluids fluids;
   fluids.add("lubricants/a", with_uncertain_shear(kOneFluid));
   fluids.add("lubricants/b", with_uncertain_shear(kOtherFluid));
@@ -219,11 +220,38 @@ TEST(ExplainPoints, AnUncertainGroupThatIsEqualHasAShareOfZeroWithAnUncertainty)
 }
 
 TEST(ExplainPoints, ErrorsThatBothShareDoNotReachTheShares) {
-  auto request = explanation_of(kOneFluid, kOneFluid, {60});
+  Fluids fluids;
+  fluids.add("lubricants/a", with_uncertain_shear(kOneFluid));
+  auto request = explanation_of("lubricants/a", "lubricants/a", {60});
   request.set_inlet_temperature_rise_uncertainty_kelvin(5);
-  const v1::DifferenceExplanation mean = explain(request).mean();
+  const v1::DifferenceExplanation mean = explain(request, fluids).mean();
   EXPECT_GT(mean.inefficiency_percent().standard_uncertainty(), 0);
   EXPECT_EQ(mean.inefficiency_difference_percent().standard_uncertainty(), 0);
+}
+
+TEST(ExplainPoints, WithoutAStatedUncertaintyOfBothOilsHasNoIntervals) {
+  Fluids fluids;
+  fluids.add("lubricants/a", with_uncertain_shear(kOneFluid));
+  for (const char* first : {"lubricants/a", kOneFluid}) {
+    const auto mean = explain(explanation_of(first, kOtherFluid, {60}), fluids).mean();
+    EXPECT_NE(mean.inefficiency_difference_percent().value(), 0);
+    EXPECT_TRUE(std::isnan(mean.inefficiency_difference_percent().interval_minimum()));
+    EXPECT_TRUE(std::isnan(
+        share(mean, v1::PARAMETER_GROUP_PRESSURE_RESPONSE).shapley_value().standard_uncertainty()));
+  }
+}
+
+TEST(ExplainPoints, RefuseAnOilBelowItsPourPointWhicheverComesFirst) {
+  v1::Lubricant thick = exact_seed<v1::Lubricant>(kOtherFluid);
+  thick.set_pour_point_celsius(-5);
+  Fluids fluids;
+  fluids.add("lubricants/thick", thick);
+  for (const bool is_first : {true, false}) {
+    auto request = explanation_of(is_first ? "lubricants/thick" : kOneFluid,
+                                  is_first ? kOneFluid : "lubricants/thick", {60});
+    request.mutable_conditions(0)->set_sump_temperature_celsius(-10);
+    EXPECT_EQ(explain(request, fluids).mean().refusal_reason(), "BELOW_POUR_POINT");
+  }
 }
 
 TEST(ExplainPoints, EqualRequestsHaveEqualAnswers) {
@@ -256,7 +284,7 @@ TEST(ExplainPoints, RefusesWhatItCannotExplainAndNamesTheField) {
 
 TEST(ExplainPoints, SaysWhyACombinationIsRefused) {
   // The viscosity of b is infinite at 40 C, where the coefficient of the other one is stated.
-  auto b = seed<v1::Lubricant>(kOtherFluid);
+  auto b = exact_seed<v1::Lubricant>(kOtherFluid);
   b.set_vogel_reference_temperature_kelvin(313.15);
   b.set_vogel_temperature_coefficient_kelvin(100);
   b.set_pressure_viscosity_temperature_kelvin(373.15);
@@ -273,8 +301,9 @@ TEST(ExplainPoints, SaysWhyACombinationIsRefused) {
 
 /// The question of the paper: which property of the viscosity modifiers makes the difference?
 TEST(ExplainPoints, TheFluidsOfThePaperDifferByTheirPressureResponse) {
-  const v1::DifferenceExplanation second =
-      explain(explanation_of(kOneFluid, kOtherFluid, {20, 40, 60, 80, 100, 120, 140})).mean();
+  auto request = explanation_of(kOneFluid, kOtherFluid, {20, 40, 60, 80, 100, 120, 140});
+  request.mutable_model_options()->set_preset(v1::ModelOptions::PAPER);
+  const v1::DifferenceExplanation second = explain(request).mean();
   EXPECT_NEAR(second.inefficiency_difference_percent().value(), 0.234, 0.001);
   EXPECT_NEAR(share(second, v1::PARAMETER_GROUP_PRESSURE_RESPONSE).shapley_value().value(), 0.347,
               0.001);

@@ -388,6 +388,20 @@ TEST_F(ImportTest, AViscosityThatContradictsTheOthersIsNamedByItsRow) {
                              HasSubstr("Did you mean 1200 P (120000 mPa s) at -40 C?")));
 }
 
+TEST_F(ImportTest, ATableOfMillipascalSecondsThatSaysPascalSecondsIsRefusedByARow) {
+  v1::ImportLubricantRequest asked;
+  asked.set_lubricant_id("oil");
+  std::string csv = "T (C);Viscosity (Pa s)\n";
+  for (const double celsius : {20.0, 40.0, 60.0, 100.0}) {
+    csv += fmt::format("{};{}\n", celsius, 0.155 * std::exp(944.8 / (celsius + 273.15 - 159)));
+  }
+  asked.set_viscosity_table_csv(csv);
+  EXPECT_THAT(complaints(import_lubricant(app_, asked).error()),
+              testing::AllOf(HasSubstr("viscosity_table_csv row 5 column dynamic_viscosity_"
+                                       "pascal_seconds: "),
+                             HasSubstr("A factor of 1000")));
+}
+
 std::string waves(double amplitude, double wave_length, int samples,
                   const std::string& header = "position_micrometres,height_nanometres") {
   std::string out = header + "\n";
@@ -658,6 +672,24 @@ TEST_F(ImportTest, AnInvalidProfileIsReportedByRowAndColumn) {
   request.add_profiles()->set_member(v1::FLANK_MEMBER_PINION);
   EXPECT_THAT(complaints(import_surface_profiles(app_, request).error()),
               HasSubstr("in all or none"));
+}
+
+TEST_F(ImportTest, AProfileOfNoMachinedSurfaceIsRefusedWithTheUnitThatIsMeant) {
+  v1::ImportSurfaceProfilesRequest request;
+  request.set_surface_id("measured");
+  const auto said = [&](const std::string& header) {
+    request.clear_profiles();
+    request.add_profiles()->set_csv(waves(300, 50, 4001, header));
+    return complaints(import_surface_profiles(app_, request).error());
+  };
+  EXPECT_THAT(said("position_micrometres,height_micrometres"),
+              testing::AllOf(HasSubstr("profiles[0].csv.mean_square_slope: rms height 212 um"),
+                             HasSubstr("heights in nm, not in um (a factor of 1000)")));
+  EXPECT_THAT(said("position_micrometres,height_millimetres"),
+              HasSubstr("heights in nm, not in mm"));
+  EXPECT_THAT(said("position_millimetres,height_nanometres"),
+              HasSubstr("positions in um, not in mm"));
+  EXPECT_THAT(said("position_micrometres,height_nanometres"), Not(HasSubstr("profiles[0]")));
 }
 
 TEST_F(ImportTest, AllViolationsOfProfilesAreReportedTogether) {

@@ -18,6 +18,7 @@
 #include "server/simulation/point_evaluation.h"
 #include "server/simulation/simulation_inputs.h"
 #include "tests/service/support.h"
+#include "tests/service/uncertain_fluids.h"
 
 namespace tribodyn::server {
 namespace {
@@ -217,9 +218,11 @@ TEST(EvaluatePoints, EveryParameterOfACandidateHasElasticities) {
   const v1::EvaluatePointsResponse out = evaluate(request);
   ASSERT_EQ(out.elasticities_size(), request.elasticity_parameters_size());
   for (const v1::ElasticityColumn& each : out.elasticities()) {
-    const bool is_of_another_law = each.parameter().find("improved_yasutomi") != std::string::npos;
+    const bool is_not_used = each.parameter().find("improved_yasutomi") != std::string::npos ||
+                             each.parameter() == "lubricant.asperity_friction_coefficient" ||
+                             each.parameter() == "lubricant.tribofilm_shear_strength_pascals";
     EXPECT_TRUE(std::isfinite(each.values(0))) << each.parameter();
-    EXPECT_EQ(each.values(0) == 0, is_of_another_law) << each.parameter();
+    EXPECT_EQ(each.values(0) == 0, is_not_used) << each.parameter();
   }
 }
 
@@ -324,6 +327,39 @@ TEST(EvaluatePoints, PointsThatLoseContactHaveElasticities) {
   EXPECT_GT(lost, 0);
 }
 
+TEST(EvaluatePoints, ColumnsThatTheBoundaryFrictionOfTheOilOverridesAreRefused) {
+  const auto violations_with = [](const v1::Lubricant& oil, const char* path) {
+    Fluids fluids;
+    fluids.add("lubricants/oil", oil);
+    v1::EvaluatePointsRequest request = request_of_candidates();
+    request.set_lubricant("lubricants/oil");
+    request.mutable_candidate_columns(1)->set_path(path);
+    Violations violations;
+    read_points(request, fluids.lookup(), violations);
+    return violations;
+  };
+  const auto plain = seed<v1::Lubricant>("lubricants/paper-fluid-1");
+  v1::Lubricant with_number = plain, with_table = plain;
+  with_number.set_asperity_friction_coefficient(0.1);
+  for (const double celsius : {40.0, 100.0}) {
+    v1::BoundaryFrictionAtTemperature& each = *with_table.add_asperity_friction_by_temperature();
+    each.set_temperature_celsius(celsius);
+    each.set_asperity_friction_coefficient(0.1);
+  }
+  const char *of_surface = "surface.asperity_friction_coefficient",
+             *of_oil = "lubricant.asperity_friction_coefficient";
+  EXPECT_TRUE(violations_with(plain, of_surface).empty());
+  EXPECT_TRUE(violations_with(plain, of_oil).empty());
+  EXPECT_TRUE(violations_with(with_number, of_oil).empty());
+  for (const auto& [oil, path] :
+       {std::pair(with_number, of_surface), std::pair(with_table, of_surface),
+        std::pair(with_table, of_oil)}) {
+    const Violations found = violations_with(oil, path);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found.front().field, "candidate_columns[1].path");
+  }
+}
+
 TEST(EvaluatePoints, ElasticitiesThatDoNotExistAreRefusedByName) {
   v1::EvaluatePointsRequest request = request_of_candidates();
   request.add_elasticity_figures("film_ratio_minimum");
@@ -370,7 +406,7 @@ TEST(EvaluatePoints, AllViolationsNameTheFieldAsStated) {
                              "no parameter of a lubricant or surface that the model uses; did you "
                              "mean \"lubricant.relaxation_time_seconds\"?"));
   EXPECT_THAT(all, HasSubstr("candidate_columns[1].values[2]: asperity_friction_coefficient = 11; "
-                             "allowed: 0 to 10"));
+                             "allowed: 0 to 2"));
   EXPECT_THAT(all, HasSubstr("candidate_columns[2].values: 1 values; allowed: one for each"));
   EXPECT_THAT(all, HasSubstr("conditions[3].speed_kilometres_per_hour: "
                              "speed_kilometres_per_hour = -5 km/h; allowed: 0.1 to 400 km/h"));

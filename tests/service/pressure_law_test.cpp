@@ -225,7 +225,7 @@ TEST(PressureLaw, AContactOfStatedParametersIsThatOfTheCore) {
   set_yasutomi(gear_oil_80w90(), expected);
   const ContactSolution solution =
       FlankContactModel(expected, solid(request), roughness(request), boundary_friction(request),
-                        60 + kZeroCelsius, 10, {})
+                        60 + kZeroCelsius, 10, recommended_model())
           .solve(contact_conditions(request));
   const v1::EvaluateContactResponse answer = evaluate_contact(request, *oil);
   EXPECT_EQ(answer.friction_newtons(), solution.friction);

@@ -21,8 +21,8 @@ using testing::HasSubstr;
 
 /// Fluid and surface of the test's requests.
 struct RigInputs {
-  v1::Lubricant fluid = seed<v1::Lubricant>("lubricants/paper-fluid-1");
-  v1::Surface surface = seed<v1::Surface>("surfaces/run-in");
+  v1::Lubricant fluid = exact_seed<v1::Lubricant>("lubricants/paper-fluid-1");
+  v1::Surface surface = exact_seed<v1::Surface>("surfaces/run-in");
 };
 
 void state_uncertainty(v1::Surface& surface, const std::string& field, double uncertainty) {
@@ -37,6 +37,7 @@ v1::EvaluateRigRequest banded_request(int draws) {
   out.set_lubricant("lubricants/a");
   out.set_radius_x_metres(0.0127);
   out.set_draws(draws);
+  out.mutable_model_options()->set_preset(v1::ModelOptions::PAPER);
   return out;
 }
 

@@ -266,6 +266,46 @@ TEST(Seeds, EveryParameterHasAProvenanceAndASource) {
   for (const auto& name : seed_lookup().names(kVehicles)) expect_provenance<v1::Vehicle>(name);
 }
 
+/// Checks that every number that was assumed or calibrated states its uncertainty. A zero has none,
+/// nor has a temperature that says where another number holds, nor a block.
+template <class Resource>
+void expect_uncertainties(const std::string& name) {
+  const auto resource = seed<Resource>(name);
+  for (const v1::ParameterProvenance& entry : resource.provenance()) {
+    if (entry.provenance() != v1::PROVENANCE_ASSUMED &&
+        entry.provenance() != v1::PROVENANCE_CALIBRATED) {
+      continue;
+    }
+    const auto* field = Resource::descriptor()->FindFieldByName(entry.field());
+    const bool is_number = field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE;
+    if (!is_number || resource.GetReflection()->GetDouble(resource, field) == 0 ||
+        entry.field() == "pressure_viscosity_temperature_kelvin" ||
+        entry.field() == "rheology_reference_temperature_kelvin") {
+      continue;
+    }
+    EXPECT_GT(entry.standard_uncertainty(), 0) << name << " " << entry.field();
+  }
+}
+
+TEST(Seeds, EveryAssumedNumberStatesItsUncertainty) {
+  for (const auto& name : seed_lookup().names(kLubricants))
+    expect_uncertainties<v1::Lubricant>(name);
+  for (const auto& name : seed_lookup().names(kGearSets)) expect_uncertainties<v1::GearSet>(name);
+  for (const auto& name : seed_lookup().names(kSurfaces)) expect_uncertainties<v1::Surface>(name);
+  for (const auto& name : seed_lookup().names(kVehicles)) expect_uncertainties<v1::Vehicle>(name);
+}
+
+TEST(Seeds, TheReferenceTemperaturesAreUniformInTheRangesThatTheGradeAllows) {
+  const std::pair<const char*, double> widths[] = {{"lubricants/paper-fluid-1", 165 - 149},
+                                                   {"lubricants/paper-fluid-2", 163 - 150},
+                                                   {"lubricants/paper-fluid-3", 172 - 157}};
+  for (const auto& [name, width] : widths) {
+    const auto fluid = seed<v1::Lubricant>(name);
+    const auto* entry = find_provenance(fluid.provenance(), "vogel_reference_temperature_kelvin");
+    EXPECT_NEAR(entry->standard_uncertainty(), width / std::sqrt(12.0), 0.05) << name;
+  }
+}
+
 template <class Resource>
 void expect_accepted_as_they_are(const char* collection) {
   for (const std::string& name : seed_lookup().names(collection)) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/uncertainty/drawn_value.h"
+#include "proto/resource_kinds.h"
 #include "server/contract/resource_names.h"
 #include "server/resources/lubricant_parameters.h"
 #include "server/simulation/point_comparison.h"
@@ -18,7 +19,15 @@
 
 namespace tribodyn::server {
 
-/// Resources of a test besides the seeds.
+/// A seed whose numbers are exact: tests state the uncertainties that they need.
+template <class Resource>
+Resource exact_seed(const std::string& name) {
+  auto out = seed<Resource>(name);
+  for (auto& entry : *out.mutable_provenance()) entry.clear_standard_uncertainty();
+  return out;
+}
+
+/// Resources of a test besides the seeds, which are exact.
 class Fluids {
  public:
   void add(const std::string& name, const google::protobuf::Message& resource) {
@@ -29,8 +38,16 @@ class Fluids {
     out.find = [seeds = out.find,
                 bodies = bodies_](const RevisionName& name) -> std::optional<FoundResource> {
       const auto found = bodies.find(name.name);
-      if (found == bodies.end()) return seeds(name);
-      return FoundResource{1, false, found->second};
+      if (found != bodies.end()) return FoundResource{1, false, found->second};
+      auto seeded = seeds(name);
+      if (!seeded) return seeded;
+#define TRIBODYN_EXACT(Resource, field, collection, seed_id)                \
+  if (name.name.starts_with(#collection "/")) {                             \
+    seeded->body = exact_seed<v1::Resource>(name.name).SerializeAsString(); \
+  }
+      TRIBODYN_RESOURCE_KINDS(TRIBODYN_EXACT)
+#undef TRIBODYN_EXACT
+      return seeded;
     };
     return out;
   }
@@ -57,7 +74,7 @@ inline constexpr char kAlpha[] = "pressure_viscosity_coefficient_per_pascal";
 /// Fluid 1 with a pressure-viscosity coefficient known to 5 % or so.
 inline v1::Lubricant fluid_with_alpha(double factor = 1, double relative_uncertainty = 0.05,
                                       bool is_estimate = false) {
-  auto out = seed<v1::Lubricant>("lubricants/paper-fluid-1");
+  auto out = exact_seed<v1::Lubricant>("lubricants/paper-fluid-1");
   const double value = factor * out.pressure_viscosity_coefficient_per_pascal();
   out.set_pressure_viscosity_coefficient_per_pascal(value);
   set_uncertainty(out, kAlpha, relative_uncertainty * value, is_estimate);
@@ -122,7 +139,7 @@ inline MeasuredFluid measured_fluid(std::mt19937_64& random) {
   std::uniform_real_distribution<double> uniform(0, 1);
   std::normal_distribution<double> normal;
   MeasuredFluid out;
-  out.truth = seed<v1::Lubricant>("lubricants/paper-fluid-1");
+  out.truth = exact_seed<v1::Lubricant>("lubricants/paper-fluid-1");
   out.measured = out.truth;
   for (const ErringInput& input : kErring) {
     const auto* field = v1::Lubricant::descriptor()->FindFieldByName(input.field);

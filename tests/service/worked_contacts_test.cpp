@@ -49,6 +49,7 @@ v1::EvaluateContactRequest request_of(const JsonValue& input) {
   out.set_tribofilm_shear_strength_pascals(number(input, "bound.tau_0"));
   out.set_asperity_friction_coefficient(number(input, "bound.zeta"));
   v1::ModelOptions* options = out.mutable_model_options();
+  options->set_preset(v1::ModelOptions::PAPER);
   options->set_isothermal(!at(input, "thermal").bool_value());
   options->set_newtonian(at(input, "rheology").string_value() == "newton");
   options->set_exact_hertz(at(input, "hertz").string_value() == "exact");

@@ -37,6 +37,7 @@ void expect_orbit(const v1::CurvePoint& point, const std::string& name) {
 TEST(WorkedOrbits, AnOperatingPointAgreesThroughTheWholeService) {
   Bench bench{StudyFunctions()};
   v1::Simulation simulation = point_simulation();
+  simulation.mutable_model_options()->set_preset(v1::ModelOptions::PAPER);
   simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(100);
   simulation.mutable_solver_options()->set_tolerance(kSolverTolerance);
   const std::string name = bench.create(simulation);
@@ -47,6 +48,7 @@ TEST(WorkedOrbits, AnOperatingPointAgreesThroughTheWholeService) {
 TEST(WorkedOrbits, ACurveAgreesThroughTheWholeService) {
   Bench bench{StudyFunctions()};
   v1::Simulation simulation = curve_simulation();
+  simulation.mutable_model_options()->set_preset(v1::ModelOptions::PAPER);
   simulation.set_lubricant("lubricants/paper-fluid-1");
   v1::InefficiencyCurveStudy* curve = simulation.mutable_inefficiency_curve();
   curve->set_first_speed_kilometres_per_hour(20);

@@ -79,7 +79,7 @@ class ContactArrays {
                                        &s.central_film_thickness,
                                        &s.film_ratio,
                                        &s.maximum_pressure,
-                                       &s.film_load,
+                                       &s.ellipse_load,
                                        &s.asperity_load,
                                        &s.sliding_speed,
                                        &s.shear_rate,

@@ -215,6 +215,16 @@ TEST(Characterisation, WarnsOfAMisfitAndOfExtrapolation) {
   EXPECT_EQ(two.parameters.vogel_reference_temperature.provenance, Provenance::kAssumed);
 }
 
+TEST(Characterisation, WarnsOfAViscosityIndexThatGearOilsDoNotHave) {
+  const auto is_unusual = [](double kv40, double kv100) {
+    return warns(characterise(three_numbers(kv40, kv100)), "VISCOSITY_INDEX_UNUSUAL");
+  };
+  EXPECT_FALSE(is_unusual(100, 14.5));
+  EXPECT_FALSE(is_unusual(30, 4.24)) << "index -25, naphthenic";
+  EXPECT_TRUE(is_unusual(400, 15)) << "index -71";
+  EXPECT_TRUE(is_unusual(120, 50)) << "index 423, silicone";
+}
+
 TEST(Characterisation, RefusesNonsense) {
   const auto reason = [](auto&& change) {
     FluidMeasurements fluid = three_numbers();

@@ -94,6 +94,90 @@ TEST(GrossErrors, LeaveOilsOfTheTradeAlone) {
   }
 }
 
+/// The oil without KV40 and KV100: its viscosities at four temperatures, times a factor.
+FluidMeasurements table_of(const FluidMeasurements& fluid, double factor) {
+  FluidMeasurements out;
+  out.base_oil = fluid.base_oil;
+  out.density_15 = fluid.density_15;
+  const Lubricant law = characterise(fluid).lubricant;
+  for (const double celsius : {20.0, 40.0, 60.0, 100.0}) {
+    const double temperature = celsius + kZeroCelsius;
+    out.viscosities.push_back({temperature, factor * ambient_viscosity(law, temperature), 0});
+  }
+  return out;
+}
+
+TEST(GrossErrors, HoldATableToTheLimitsOfKV100) {
+  EXPECT_TRUE(characterise(table_of(oil(), 1)).gross_errors.empty());
+  for (const double factor : {1e3, 1e-3}) {
+    const auto errors = characterise(table_of(oil(), factor)).gross_errors;
+    ASSERT_EQ(errors.size(), 1) << factor;
+    const GrossError& error = errors.front();
+    EXPECT_EQ(error.code, "VISCOSITY_IMPLAUSIBLE");
+    EXPECT_EQ(error.measurement, Measurement::kViscosity);
+    EXPECT_EQ(error.row, 3) << "the one at 100 C";
+    EXPECT_TRUE(says(error.sentence, "mPa s and Pa s")) << error.sentence;
+    EXPECT_TRUE(says(error.sentence, "A factor of 1000 makes it 15 mm2/s")) << error.sentence;
+  }
+}
+
+TEST(GrossErrors, HoldATableToTheLimitsOfTheViscosityIndex) {
+  FluidMeasurements fluid;
+  fluid.viscosities = {{kHundredCelsius, 0.014, 0}, {kFortyCelsius, 0.02, 0}};
+  const auto errors = characterise(fluid).gross_errors;
+  ASSERT_EQ(errors.size(), 1);
+  EXPECT_EQ(errors.front().code, "VISCOSITY_INDEX_IMPLAUSIBLE");
+  EXPECT_EQ(errors.front().measurement, Measurement::kViscosity);
+  EXPECT_EQ(errors.front().row, 1) << "the one at 40 C";
+}
+
+struct ColdOil {
+  double kv40, kv100, density, celsius, pascal_seconds;
+};
+
+FluidMeasurements with_cold(const ColdOil& oil_data, double factor) {
+  FluidMeasurements fluid = oil(oil_data.kv40, oil_data.kv100, oil_data.density);
+  fluid.base_oil = BaseOilClass::kGroupI;
+  fluid.cold_viscosities = {cold(oil_data.celsius, factor * oil_data.pascal_seconds)};
+  return fluid;
+}
+
+// 80W-90, 85W-140 and SAE 30 as their maker publishes them.
+constexpr ColdOil kPublished[] = {
+    {136, 14.5, 900, -26, 112}, {328, 25.3, 910, -12, 81.8}, {53, 10.5, 879, -35, 14}};
+
+TEST(GrossErrors, LeavePublishedColdViscositiesAlone) {
+  for (const ColdOil& each : kPublished) {
+    const auto errors = characterise(with_cold(each, 1)).gross_errors;
+    EXPECT_TRUE(errors.empty()) << errors.front().sentence;
+  }
+}
+
+TEST(GrossErrors, NameThePowerOfTenByWhichAColdViscosityIsTooHigh) {
+  for (const ColdOil& each : kPublished) {
+    for (const double factor : {100.0, 1000.0}) {
+      const CharacterisedFluid known = characterise(with_cold(each, factor));
+      ASSERT_EQ(known.gross_errors.size(), 1) << each.kv40;
+      const GrossError& error = known.gross_errors.front();
+      EXPECT_EQ(error.code, "COLD_VISCOSITY_IMPLAUSIBLE");
+      EXPECT_EQ(error.measurement, Measurement::kColdViscosity);
+      EXPECT_TRUE(says(error.sentence, factor == 100 ? "1/100 of it" : "1/1000 of it"))
+          << error.sentence;
+    }
+  }
+}
+
+TEST(GrossErrors, RefuseAColdViscosityThatIsTooLow) {
+  for (const double factor : {0.1, 0.01}) {
+    for (const ColdOil& each :
+         {ColdOil{103, 15.1, 868, -40, 98}, ColdOil{136, 14.5, 900, -26, 112}}) {
+      const FluidMeasurements fluid = with_cold(each, factor);
+      if (!fit_refusal(fluid).empty()) continue;  // no law can be fitted at all
+      EXPECT_FALSE(characterise(fluid).gross_errors.empty()) << each.kv40 << " " << factor;
+    }
+  }
+}
+
 TEST(GrossErrors, BeginBeyondTheLimitsOfTheTable) {
   const auto code = [](const FluidMeasurements& fluid) {
     const auto errors = characterise(fluid).gross_errors;
@@ -102,6 +186,8 @@ TEST(GrossErrors, BeginBeyondTheLimitsOfTheTable) {
   EXPECT_EQ(code(oil(15.01, 15)), "VISCOSITY_INDEX_IMPLAUSIBLE");
   EXPECT_EQ(code(oil(400, 15)), "");
   EXPECT_EQ(code(oil(450, 15)), "VISCOSITY_INDEX_IMPLAUSIBLE");
+  EXPECT_EQ(code(oil(120, 50, 970)), "") << "a silicone of index 423";
+  EXPECT_EQ(code(oil(20000, 1600, 970)), "VISCOSITY_IMPLAUSIBLE");
   FluidMeasurements sheared = oil();
   sheared.sheared_kinematic_viscosity_100 = 15.2e-6;
   EXPECT_EQ(code(sheared), "");

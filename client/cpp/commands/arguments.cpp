@@ -19,7 +19,8 @@ void add_flags(CLI::App& app, const FlagList& list, GivenTexts& given,
   for (const Flag& flag : list.flags()) {
     if (replaces(replacements, flag)) continue;
     if (flag.is_switch) {
-      app.add_flag_callback(flag.names, [&given, &flag] { given[&flag] = {"true"}; });
+      given[&flag].resize(1);  // common flags belong to the root and to the command
+      app.add_flag(flag.names, given[&flag].front());
       continue;
     }
     CLI::Option* option = app.add_option_function<std::vector<std::string>>(
@@ -157,6 +158,9 @@ Parsed parse_arguments(const std::vector<std::string>& arguments,
   }
   if (parsed.wants_help || parsed.wants_version) return parsed;
 
+  // A switch has a text only if it is given.
+  std::erase_if(
+      given, [](const auto& each) { return each.first->is_switch && each.second.front().empty(); });
   complain_of_extras(root, *app, parsed.command, commands, common_flags, parsed.complaints);
   if (parsed.command == nullptr) return parsed;
   const auto typed = [&](const Flag& flag) {

@@ -1,12 +1,14 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "client/cpp/commands/campaign_command.h"
 #include "client/cpp/commands/candidate_flags.h"
 #include "client/cpp/commands/flag_errors.h"
 #include "client/cpp/report/candidate_decisions.h"
+#include "client/cpp/service/screening_campaign.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
@@ -80,12 +82,14 @@ void name_figure_column(Connection& connection, const std::string& campaign,
   figure.set_column(usual_column(connection.get_campaign(name)));
 }
 
-/// A decision of the server: the figures of its request, the call, and the text of its answer.
+/// A decision of the server: the figures of its request, the call, and the text of its answer,
+/// which has the warnings of a ranking.
 template <class Request, class Response>
 struct Decision {
   std::vector<v1::CandidateFigure*> (*figures)(Request&);
   Response (Connection::*decide)(const Request&);
-  std::string (*text)(const Request&, const Response&, OutputFormat);
+  std::string (*text)(const Request&, const Response&, const v1::RankCandidatesResponse&,
+                      OutputFormat);
 };
 
 /// Makes the call and prints the answer, which it returns.
@@ -98,7 +102,18 @@ Response decided(const Decision<Request, Response>& decision, const std::string&
     name_figure_column(connection, campaign, *figure);
   }
   Response answer = (connection.*decision.decide)(request);
-  std::cout << decision.text(request, answer, options.output_format);
+  v1::RankCandidatesResponse ranking;
+  if constexpr (!std::is_same_v<Response, v1::RankCandidatesResponse>) {
+    v1::RankCandidatesRequest wanted;
+    wanted.set_name(campaign);
+    *wanted.mutable_objective()->mutable_figure() = *decision.figures(request).front();
+    *wanted.mutable_constraints() = request.constraints();
+    *wanted.mutable_condition_weights() = request.condition_weights();
+    ranking = figures_ranking(connection, wanted);
+  }
+  std::cout << decision.text(request, answer, ranking, options.output_format);
+  const bool has_notes = ranking.ranked() > 0 && options.output_format == OutputFormat::kTable;
+  if (has_notes) std::cout << ranking_notes(ranking);
   return answer;
 }
 
@@ -126,8 +141,8 @@ Command rank_command() {
   const auto uncertainties = std::make_shared<std::vector<v1::ParameterUncertainty>>();
   add_uncertainty_flag(command.flags, *uncertainties);
   command.flags.number("--confidence", {"-", "0.5 to 0.9999", "0.95"},
-                       "Probability from which on a candidate is worse than the best one; others "
-                       "are ties",
+                       "Candidates are tied with the best one if this interval of the difference "
+                       "holds 0",
                        [&request](double value) { request.set_confidence(value); });
   command.flags.toggle("--no-stated-uncertainty",
                        "Leave out the uncertainties that lubricant and surface state.",
@@ -140,7 +155,10 @@ Command rank_command() {
   command.run = [flags, uncertainties](const CommonOptions& options) {
     static constexpr Decision<Request, v1::RankCandidatesResponse> kDecision{
         [](Request& wanted) { return std::vector{wanted.mutable_objective()->mutable_figure()}; },
-        &Connection::rank_candidates, ranking_answer_text};
+        &Connection::rank_candidates,
+        [](const Request& asked, const v1::RankCandidatesResponse& answer,
+           const v1::RankCandidatesResponse&,
+           OutputFormat format) { return ranking_answer_text(asked, answer, format); }};
     Request& wanted = flags->request;
     *wanted.mutable_uncertainties() = {uncertainties->begin(), uncertainties->end()};
     if (!flags->objectives.empty()) {
@@ -203,9 +221,11 @@ Command effects_command() {
   const auto flags = std::make_shared<DecisionFlags<Request>>();
   Command command = one_campaign_command(
       {"campaigns effects", "estimate what columns of the candidates do to a figure",
-       "Prints the main effects of parameters and of columns that ride along, such as the "
+       "Prints the main effects of parameters, or of --columns that ride along, such as the "
        "concentration of an additive, on a figure, with their intervals: from the lowest value to "
-       "the highest one, or from the most frequent text to another one.",
+       "the highest one, or from the most frequent text to another one. The effect of a column "
+       "that "
+       "rides along need not be a cause.",
        "tribodyn campaigns effects 12"},
       flags->campaign);
   command.examples.emplace_back(
@@ -221,7 +241,8 @@ Command effects_command() {
     read_candidate_figure("--figure", texts.back(), *request.mutable_figure(), complaints);
   };
   command.flags.texts("--columns", "NAME",
-                      "Columns of the candidates, separated by commas. Default: all.",
+                      "Columns of the candidates, separated by commas. Default: the parameters of "
+                      "the model in which they differ.",
                       [&request](const std::string& name) { request.add_columns(name); });
   add_selection_flags(command.flags, request);
   command.flags.number("--coverage", {"-", "0.5 to 0.9999", "0.95"}, "Probability of the intervals",

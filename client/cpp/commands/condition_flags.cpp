@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "client/cpp/text/text.h"
+
 namespace tribodyn::client {
 namespace {
 
@@ -58,9 +60,18 @@ void add_condition_flags(FlagList& list, SumpCount sumps, ConditionFlags& flags)
                  "Temperatures of the oil bath separated by commas",
                  [&flags](double value) { flags.sumps.push_back(value); });
   } else {
-    list.number("--sump-temperature-celsius,--sump", {"C", "-70 to 200", "40"},
-                "Temperature of the oil bath",
-                [&flags](double value) { flags.sumps.assign(1, value); });
+    Flag& sump = list.numbers("--sump-temperature-celsius,--sump", {"C", "-70 to 200", "40"},
+                              "Temperature of the oil bath",
+                              [&flags](double value) { flags.sumps.assign(1, value); });
+    sump.is_repeatable = false;
+    sump.read = [read = sump.read](const std::vector<std::string>& texts, Complaints& complaints) {
+      const bool has_comma = std::any_of(texts.begin(), texts.end(), [](const std::string& text) {
+        return text.find(',') != std::string::npos;
+      });
+      if (!has_comma) return read(texts, complaints);
+      complaints.push_back("--sump: '" + printable(joined(texts, " ")) +
+                           "' has a comma; give one temperature, with a decimal point");
+    };
   }
   list.numbers("--condition-weights,--weights", {"-", "1e-9 to 1e9", "equal"},
                "Weights of the speeds in the mean, one for each",

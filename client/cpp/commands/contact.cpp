@@ -56,8 +56,8 @@ constexpr std::array kInputs = {
                  "Greenwood-Tripp beta_G (eq 41)"},
     ContactInput{"composite_rms_height_metres", "m", "1e-10 to 1e-2", 0.4e-6,
                  "Roughness sigma_G of both surfaces (eq 41)"},
-    ContactInput{"tribofilm_shear_strength_pascals", "Pa", "0 to 1e10", 2e6, "tau_0 of eq 40"},
-    ContactInput{"asperity_friction_coefficient", "-", "0 to 10", 0.17, "zeta of eq 40"},
+    ContactInput{"tribofilm_shear_strength_pascals", "Pa", "0 to 1e9", 2e6, "tau_0 of eq 40"},
+    ContactInput{"asperity_friction_coefficient", "-", "0 to 2", 0.17, "zeta of eq 40"},
 };
 
 /// The 95 % interval ends at the fifth draw from either end.

@@ -97,9 +97,10 @@ std::vector<DesignColumn> columns_of_ranges(const DesignFlags& flags) {
   std::vector<DesignColumn> out;
   for (std::size_t k = 0; k < flags.factors.size(); ++k) {
     const DesignFactor& factor = flags.factors[k];
-    out.push_back({factor.field->name(), column_values(shares, k, [&](double share) {
-                     return value_in_range(factor.range, share);
-                   })});
+    out.push_back(
+        {CandidateParameter{factor.field, {}}.header(), column_values(shares, k, [&](double share) {
+           return value_in_range(factor.range, share);
+         })});
   }
   return out;
 }
@@ -125,7 +126,8 @@ std::vector<DesignColumn> columns_of_uncertainties(const DesignOptions& flags,
   for (std::size_t k = 0; k < uncertain.size(); ++k) {
     const auto [field, uncertainty] = uncertain[k];
     const double value = base_value(base, *field);
-    out.push_back({field->name(), column_values(shares, k, [&, spread = uncertainty](double share) {
+    out.push_back({CandidateParameter{field, {}}.header(),
+                   column_values(shares, k, [&, spread = uncertainty](double share) {
                      return drawn_value(value, spread, normal_quantile(share));
                    })});
   }

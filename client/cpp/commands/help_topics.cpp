@@ -37,11 +37,18 @@ cell. An empty cell leaves the value of the base.
   Parameters of the lubricant and of the surface, by their names with or without their units:
     pressure_viscosity_coefficient, relaxation_time, limiting_shear_stress, ...;
     asperity_friction_coefficient, tribofilm_shear_strength, composite_rms_height, ...
+    Boundary friction is that of the lubricant; of the surface only after "surface.". An empty cell
+    of a lubricant that states none leaves that of the surface.
   Measurements of the lubricant: kv40, kv100, density15, "Brookfield -40 C", base_oil_class, ...:
-    the server computes the parameters from them as it does for an import with --like.
+    the server computes the parameters from them as it does for an import with --like. What it has to
+    estimate from the class of base oil, such as the pressure-viscosity coefficient, has errors that
+    a table cannot carry: such a table is refused. Import it (`tribodyn lubricants import FILE`) and
+    screen the lubricants (--lubricants), or state these parameters in columns or in the base.
   FIELD.standard_uncertainty: of a parameter, each candidate's own.
   Any other column is carried along into the results: additive, treat rate, cost. If its name
-    resembles that of a parameter, --carry NAME says that it is none.
+    resembles that of a parameter, --carry NAME says that it is none. A number of a lubricant that is
+    no parameter, such as the pour point, needs --carry too and has no effect: import lubricants with
+    it and screen them (--lubricants).
 
   name,treat rate,pressure-viscosity (1/GPa),asperity_friction_coefficient
   A1,0.5,19.8,0.11
@@ -71,9 +78,11 @@ by the thickest film, or by --least FIGURE or --most FIGURE. Each is a campaign 
 campaigns pareto 12 --least 13/traction_coefficient` sets the loss of the axle in campaign 12 against the
 traction of the same candidates in campaign 13.
 
-Candidates that cannot be told apart from the best one at the --confidence are ties. Uncertainties of
-parameters in the table (--uncertainty, columns) are each candidate's own; those of all other
-parameters, stated there or by the base, are common to all candidates and nearly cancel.
+Candidates cannot be told apart from the best one if the interval of the difference that has the
+--confidence holds 0. Candidates with a warning that withholds the verdict stand last and are marked:
+their figures decide nothing. Uncertainties of parameters in the table (--uncertainty, columns) are
+each candidate's own; those of all other parameters, stated there or by the base, are common to all
+candidates and nearly cancel.
 )text"},
       {"columns", "names and units of the columns of results",
        R"(Columns of results
@@ -98,10 +107,13 @@ figure of the result.
   ... before flash_temperature_rise_kelvin   rise of the flanks' surfaces above the inlet
   limiting_stress_area_share         mean share of the contact area at the limiting shear stress
   estimated_relative_error           of inefficiencies, torque and transmission error, by the solver
-Histories (--columns): one row for each sample. Names that begin with flank_ have a column for each
-slot: flank_load_newtons_flank_0 to _flank_2.
+  warnings                           codes of the warnings of the point, separated by blanks
+Histories (--columns): one row for each sample; the last column has the codes of the warnings. Names
+that begin with flank_ have a column for each slot: flank_load_newtons_flank_0 to _flank_2.
 compare: FIGURE_value, FIGURE_standard_uncertainty (of the inputs), FIGURE_interval_minimum and
-  _interval_maximum (95 %), FIGURE_linear_standard_uncertainty, FIGURE_solver_error.
+  _interval_maximum (95 %), FIGURE_linear_standard_uncertainty, FIGURE_solver_error;
+  difference.verdict: LOWER, HIGHER, CANNOT_BE_TOLD_APART, WITHHELD (by a warning) or
+  UNCERTAINTY_NOT_STATED, of which the last two have no probability; warnings.
 explain: one row for each group of parameters; shapley_value is its share in the difference,
   first_effect and last_effect what it adds before and after all other groups.
 )"},
@@ -191,31 +203,52 @@ create_time, end_time, input_hash and labels; jobs also have pinned (true or fal
       {"models", "what the choices of the model are worth",
        R"text(Choices of the model
 
-A figure errs by the solver, by its inputs and by the model. The first two stand beside it: as "solver
-error" and, from the uncertainties that lubricant and surface state, as a band. The third is in
-neither, and only measurements of an axle could state it. What each choice of a law is worth can be
-computed: `curve --compare` computes your curve also with the other choice. The mean inefficiency of
-paper-fluid-1 on the default axle, surface and vehicle then changes, in percent of it, by
+A figure errs by the solver, by its inputs and by the model. The solver's error has a column or a line
+of its own. What the inputs leave open, from the uncertainties that lubricant and surface state, is the
+95 % interval: "+/-" and bands mean this everywhere. The error of the model is in neither, and only
+measurements of an axle could state it.
 
-                                     20      60     100 km/h
+Two presets (--model-preset):
+  recommended   the default. The paper's model with its misprints corrected, and two departures:
+                --inlet-shear-heating: the film is thinner where oil heats up by shear in front of the
+                contact (Gupta and others 1992). Films measured on a rig at 1 to 3 m/s lie 13 % below
+                the film without it and 4 % below the film with it. Thick and cold oils lose much of
+                their film by it: without it they win where they should not.
+                --closed-load-sharing: asperities carry what the film no longer can, so that friction
+                tends to boundary friction where the film vanishes. In eq 41 alone a smooth surface's
+                asperities carry 3 % at most, and Stribeck curves fall towards low speed. Above a film
+                ratio of 1.5 it changes figures by less than 1 %.
+  paper         without both, as the paper: for whoever compares with it. `tribodyn paper` always uses
+                it.
+=false switches one of the two off: --inlet-shear-heating=false. A warning that withholds the verdict
+stands where a film without inlet heating would be wrong by more than 5 %.
+
+What each choice is worth can be computed: `curve --compare` computes your curve also with the other
+choice. Of a population of 23 oils on the default axle, surface and vehicle at a sump of 40 C the
+mean inefficiency then changes, in percent of it, by (median; least to largest)
+
+                                 20                    60                    100 km/h
+Without a departure of the preset
+  no-inlet-shear-heating         -3.3 (-6.5 to -1.5)   -6.7 (-27 to -4.5)    -13 (-32 to -8.7)
+  no-closed-load-sharing         -26 (-78 to +0.0)     +0.0 (-50 to +0.0)    +0.0 (-10 to +0.0)
+  paper                          -26 (-78 to -1.5)     -6.7 (-54 to -4.5)    -13 (-32 to -8.7)
 Another law or approximation
-  exact-hertz                     +1.22   +0.85   +0.50
-  hertz-from-total-load           +4.75   +0.59   +0.10
-  subtract-contact-point-motion  -15.73  -12.05  -12.58
-  load-dependent-mesh-data        +4.27   +0.40   -1.13
-  houpert                        -35.37  -35.40  -32.27
-An effect that the default leaves out
-  inlet-shear-heating             +2.12   +6.50  +12.03
-An effect of the default left out
-  isothermal                     +13.64  +32.81  +53.28
-  newtonian                       +9.77   +7.92   +5.40
-  no-limiting-shear-stress        +2.03   +6.39   +3.12
-  no-boundary-friction           -22.95   -3.11   -0.57
+  exact-hertz                    +0.4 (-0.1 to +1.3)   +0.5 (+0.1 to +0.9)   +0.3 (+0.0 to +0.7)
+  hertz-from-total-load          +2.2 (+0.3 to +2.8)   +0.6 (+0.0 to +2.0)   +0.2 (+0.0 to +1.4)
+  subtract-contact-point-motion  -23 (-40 to -4.2)     -7.6 (-44 to -4.2)    -5.4 (-21 to -0.7)
+  load-dependent-mesh-data       +1.7 (+0.2 to +4.7)   +0.2 (+0.0 to +0.9)   -0.7 (-1.6 to -0.2)
+  houpert                        -12 (-48 to -2.1)     -22 (-49 to -4.1)     -23 (-48 to -5.2)
+An effect left out
+  isothermal                     +11 (+1.4 to +15)     +30 (+14 to +80)      +48 (+30 to +161)
+  newtonian                      +3.0 (+0.3 to +24)    +4.9 (+1.1 to +20)    +4.2 (+0.8 to +19)
+  no-limiting-shear-stress       +1.7 (+0.0 to +71)    +9.3 (+0.0 to +31)    +5.2 (+0.0 to +17)
+  no-boundary-friction           -44 (-96 to -0.9)     -2.8 (-69 to +0.0)    -1.1 (-26 to +0.0)
 
 houpert estimates the growth of viscosity with pressure instead of using the measured coefficient.
-damping-in-contact-only, energy-consistent and tabulated-friction-arms change less than 0.05 % here.
-Differences between lubricants mostly change less than the figures, which change together:
-  tribodyn curve --lubricant A,B --speeds 20,60,100 --compare exact-hertz,inlet-shear-heating
+damping-in-contact-only, energy-consistent and tabulated-friction-arms change less than
+0.05 % here.
+Whether a choice turns the order of two lubricants over, only their own curves say:
+  tribodyn curve --lubricant A,B --speeds 20,60,100 --compare exact-hertz,no-inlet-shear-heating
 )text"},
       {"configuration", "configuration file and environment",
        R"(Configuration

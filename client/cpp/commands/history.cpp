@@ -10,6 +10,7 @@
 #include "client/cpp/report/history_report.h"
 #include "client/cpp/text/inputs.h"
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/warnings.h"
 
 namespace tribodyn::client {
 namespace {
@@ -91,19 +92,25 @@ int run_history(HistoryFlags& flags, const CommonOptions& options) {
   HistoryOptions read;
   read.maximum_points = flags.maximum_points;
   const v1::History history = connection.read_history(simulation.name(), read);
+  const std::vector<CurveWarning> found = curve_warnings({simulation});
+  const std::vector<ShownWarning> warnings(found.begin(), found.end());
   switch (options.output_format) {
-    case OutputFormat::kTable:
+    case OutputFormat::kTable: {
+      Sheet notes;
+      add_input_warnings(history.input_warnings(), notes);
+      add_warnings(warnings, notes);
       std::cout << printable(simulation.name()) << ": " << study_text(simulation) << ", "
                 << printable(simulation.lubricant()) << ", " << inputs_text(simulation) << "\n\n"
-                << history_summary(history)
+                << history_summary(history) << notes.text()
                 << "\nFor the samples use --output csv, --csv FILE or --npy FILE; for a plot "
                    "--plot FILE.svg.\n";
       break;
+    }
     case OutputFormat::kCsv:
-      std::cout << history_csv(history);
+      std::cout << history_csv(history, codes_of(warnings));
       break;
     case OutputFormat::kJson:
-      std::cout << json_text(history);
+      std::cout << json_with(json_text(history), "warnings", warnings_json(warnings));
   }
   if (!flags.csv_path.empty()) {
     download_history(connection, simulation, flags.csv_path, HistoryFile::Format::kCsv);

@@ -20,7 +20,7 @@ std::string without_revision(const std::string& name) { return name.substr(0, na
 std::string id_of(const FileResource& from, const std::string& given) {
   if (!given.empty()) return given;
   const std::string name = text_field(*from.resource, "name");
-  return name.empty() ? id_of_file(from.origin) : resource_id(without_revision(name));
+  return name.empty() ? id_of_file(from.origin) : from.kind->id_of(without_revision(name));
 }
 
 /// An index such as 3 in "3]...", and the length of its text.

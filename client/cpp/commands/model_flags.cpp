@@ -34,7 +34,10 @@ const std::map<std::string, std::string>& switch_descriptions() {
       {"inlet_shear_heating",
        "Thin the film by the shear heating of the inlet (Gupta and others 1992), which eq 12 "
        "leaves "
-       "out."},
+       "out; =false does not. Default: by the preset."},
+      {"closed_load_sharing",
+       "The film carries no more load than its thickness supports, so that friction tends to "
+       "boundary friction where the film vanishes; =false as in eq 41. Default: by the preset."},
       {"exact_hertz", "Use elliptic integrals instead of the fits of eqs 21 and 22."},
       {"hertz_from_total_load",
        "Compute the contact ellipse from the total load instead of the load on the film."},
@@ -53,9 +56,13 @@ const std::vector<std::pair<std::string, std::string>>& misprints() {
   return kMisprints;
 }
 
-void switch_on(google::protobuf::Message& message, const std::string& field) {
-  message.GetReflection()->SetBool(&message, message.GetDescriptor()->FindFieldByName(field), true);
+void set_switch(google::protobuf::Message& message, const std::string& field, bool is_on = true) {
+  message.GetReflection()->SetBool(&message, message.GetDescriptor()->FindFieldByName(field),
+                                   is_on);
 }
+
+constexpr std::pair<const char*, v1::ModelOptions::Preset> kPresets[] = {
+    {"recommended", v1::ModelOptions::RECOMMENDED}, {"paper", v1::ModelOptions::PAPER}};
 
 std::string misprint_words() {
   std::string words;
@@ -72,7 +79,7 @@ void add_as_published_flag(FlagList& flags, v1::ModelOptions& options) {
       [&options](const std::string& given) {
         for (const auto& [word, field] : misprints()) {
           if (given == word || given == field) {
-            switch_on(*options.mutable_as_published(), field);
+            set_switch(*options.mutable_as_published(), field);
             return true;
           }
         }
@@ -93,16 +100,23 @@ void add_as_published_flag(FlagList& flags, v1::ModelOptions& options) {
   };
 }
 
-/// Returns the switches of ModelOptions as words of --compare, e.g. "no-boundary-friction", by
-/// field.
-std::map<std::string, std::string> switch_words() {
-  std::map<std::string, std::string> out;
+/// A word of --compare and what it sets.
+struct SwitchWord {
+  std::string word, field;
+  bool is_on = true;
+};
+
+/// Returns the switches of ModelOptions as words of --compare, e.g. "no-boundary-friction". One
+/// that a preset decides has two words: "no-inlet-shear-heating" sets it to false.
+std::vector<SwitchWord> switch_words() {
+  std::vector<SwitchWord> out;
   const auto* descriptor = v1::ModelOptions::descriptor();
   for (int i = 0; i < descriptor->field_count(); ++i) {
     const FieldDescriptor& field = *descriptor->field(i);
-    if (field.cpp_type() == FieldDescriptor::CPPTYPE_BOOL) {
-      out[field.name()] = flag_of_field(field.name()).substr(2);
-    }
+    if (field.cpp_type() != FieldDescriptor::CPPTYPE_BOOL) continue;
+    const std::string word = flag_of_field(field.name()).substr(2);
+    out.push_back({word, field.name()});
+    if (field.has_presence()) out.push_back({"no-" + word, field.name(), false});
   }
   return out;
 }
@@ -111,20 +125,26 @@ std::map<std::string, std::string> switch_words() {
 
 std::string compared_words() {
   std::string out;
-  for (const auto& [field, word] : switch_words()) out += word + "|";
+  for (const SwitchWord& each : switch_words()) out += each.word + "|";
+  for (const auto& [word, preset] : kPresets) out += std::string(word) + "|";
   return out + "houpert|" + misprint_words() + "|up|down";
 }
 
 bool apply_variant(const std::string& word, v1::Simulation& simulation) {
-  for (const auto& [field, name] : switch_words()) {
+  for (const auto& [name, field, is_on] : switch_words()) {
     // "no-boundary" is short for "no-boundary-friction".
     if (word != name && (word != "no-boundary" || name != "no-boundary-friction")) continue;
-    switch_on(*simulation.mutable_model_options(), field);
+    set_switch(*simulation.mutable_model_options(), field, is_on);
+    return true;
+  }
+  for (const auto& [name, preset] : kPresets) {
+    if (word != name) continue;
+    simulation.mutable_model_options()->set_preset(preset);
     return true;
   }
   for (const auto& [name, field] : misprints()) {
     if (word != name) continue;
-    switch_on(*simulation.mutable_model_options()->mutable_as_published(), field);
+    set_switch(*simulation.mutable_model_options()->mutable_as_published(), field);
     return true;
   }
   if (word == "houpert") {
@@ -139,15 +159,31 @@ bool apply_variant(const std::string& word, v1::Simulation& simulation) {
 }
 
 void add_model_flags(FlagList& flags, v1::ModelOptions& options) {
-  flags.group("Model (default: the paper's model with its misprints corrected)");
+  flags.group("Model (`tribodyn help models` says what each choice is worth)");
+  std::vector<std::string> presets;
+  for (const auto& [word, preset] : kPresets) presets.emplace_back(word);
+  flags
+      .choice("--model-preset", presets,
+              "recommended: the paper's model with its misprints corrected, with shear heating of "
+              "the inlet and closed load sharing; paper: without these two. Default: recommended.",
+              [&options](int index) { options.set_preset(kPresets[index].second); })
+      .field = "preset";
   const auto* descriptor = v1::ModelOptions::descriptor();
   for (int i = 0; i < descriptor->field_count(); ++i) {
     const FieldDescriptor& field = *descriptor->field(i);
     if (field.cpp_type() != FieldDescriptor::CPPTYPE_BOOL) continue;
     const auto found = switch_descriptions().find(field.name());
-    flags.toggle(flag_of_field(field.name()),
-                 found != switch_descriptions().end() ? found->second : "See ModelOptions.",
-                 [&options, name = field.name()] { switch_on(options, name); });
+    const std::string flag = flag_of_field(field.name());
+    const std::string text =
+        found != switch_descriptions().end() ? found->second : "See ModelOptions.";
+    const auto set = [&options, name = field.name()](bool is_on) {
+      set_switch(options, name, is_on);
+    };
+    if (field.has_presence()) {
+      flags.truth(flag, text, set);
+    } else {
+      flags.toggle(flag, text, [set] { set(true); });
+    }
   }
   flags.choice("--pressure-viscosity-index", {"reciprocal-asymptotic", "houpert"},
                "Roelands index Z: solved from eq 33 for the measured coefficient, or from eq 32. "

@@ -103,7 +103,8 @@ Command paper_command() {
       "figures 5 to 16 of the paper, beside what the paper states about them",
       "Computes the studies of the figures of Paouris et al. 2018 and says of each statement "
       "whether the corrected model confirms it, with the numbers. Where it contradicts the paper, "
-      "the variants tried stand there: other laws, and the misprints of the paper.",
+      "the variants tried stand there: other laws, and the misprints of the paper. The model "
+      "has the preset `paper` (--model-preset of other commands).",
       {"tribodyn paper --output paper", "tribodyn paper 10 --output paper",
        "tribodyn paper 6 7 --output csv"},
       {},

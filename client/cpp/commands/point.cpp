@@ -6,6 +6,7 @@
 #include "client/cpp/commands/show_results.h"
 #include "client/cpp/commands/uncertainty.h"
 #include "client/cpp/report/sensitivity_report.h"
+#include "client/cpp/text/warnings.h"
 
 namespace tribodyn::client {
 namespace {
@@ -40,9 +41,13 @@ int run_sensitivities(PointFlags& flags, const CommonOptions& options) {
   for (const v1::Simulation& simulation : ended) {
     if (simulation.state() != v1::Simulation::SUCCEEDED) continue;
     switch (options.output_format) {
-      case OutputFormat::kTable:
-        std::cout << sensitivity_report(simulation.result().points(0).result());
+      case OutputFormat::kTable: {
+        Sheet warnings;
+        add_warnings(simulation, warnings);
+        std::cout << sensitivity_report(simulation.result().points(0).result()) << "\n"
+                  << warnings.text();
         break;
+      }
       case OutputFormat::kCsv:
         std::cout << sensitivity_csv(simulation.result().points(0).result());
         break;

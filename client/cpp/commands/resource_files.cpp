@@ -301,7 +301,7 @@ Command import_command(const ResourceKind& kind) {
   command.flags.group("Options");
   command.flags.text("--id", "NAME",
                      "Id of the resource. Default: the name in the file, else the file's own name.",
-                     [flags](const std::string& text) { flags->id = resource_id(text); });
+                     [flags, &kind](const std::string& text) { flags->id = kind.id_of(text); });
   command.flags
       .text(
           "--like", "NAME",

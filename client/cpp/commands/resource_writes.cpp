@@ -68,16 +68,21 @@ ResourcePointer start_of(Connection& connection, const ResourceKind& kind,
 
 int run_create(const ResourceKind& kind, const WriteFlags& flags, const CommonOptions& options) {
   Connection connection = options.connect();
+  if (flags.name.starts_with("projects/") &&
+      !flags.name.starts_with("projects/" + connection.project() + "/")) {
+    throw Failure(kExitUsage, "NAME: '" + printable(flags.name) + "' is not of the project '" +
+                                  printable(connection.project()) + "'; set --project");
+  }
   const ResourcePointer resource = start_of(connection, kind, flags);
   flags.edits.apply(*resource);
   set_text(*resource, "name", "");
   const ResourcePointer created = create_with_tables(
-      connection, kind, *resource, resource_id(flags.name), flags.tables, flags.validate_only);
+      connection, kind, *resource, kind.id_of(flags.name), flags.tables, flags.validate_only);
   show_written("created", *created, flags.validate_only, options.output_format,
                ResourceDetail::kSummary);
   if (kind.word == "lubricants" && options.output_format == OutputFormat::kTable &&
       !flags.validate_only) {
-    std::cout << "\nNext:  tribodyn curve --lubricant " << resource_id(flags.name) << "\n";
+    std::cout << "\nNext:  tribodyn curve --lubricant " << kind.id_of(flags.name) << "\n";
   }
   return kExitOk;
 }

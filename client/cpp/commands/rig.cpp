@@ -208,7 +208,7 @@ int run_rig(const RigFlags& flags, const RigCommand& rig, const CommonOptions& o
   const MapPicture picture =
       map_of(rows, rig.view, *rig_axis(flags.map[0]), *rig_axis(flags.map[1]), settings, version);
   std::cout << (options.output_format == OutputFormat::kTable
-                    ? map_table(picture)
+                    ? map_table(picture) + warnings_text(rig_warnings(rows, rig.view))
                     : rig_text(rows, rig.view, options.output_format, draws));
   if (!flags.plot_path.empty()) write_file(flags.plot_path, map_plot(picture));
   return kExitOk;
@@ -292,10 +292,10 @@ RigCommand rig_of_film() {
           "film of a ball on a disc against speed",
           "Computes films of a ball on a disc, as optical interferometry measures them, by the "
           "contact "
-          "of the axle. Nothing is stored. Films of fast or cold oils need --inlet-shear-heating. "
+          "of the axle. Nothing is stored. "
           "Default: a smooth 19.05 mm ball of steel that rolls on glass.",
           {"tribodyn film paper-fluid-1 paper-fluid-2 paper-fluid-3 --plot film.svg",
-           "tribodyn film paper-fluid-1 --temperature 40,100 --inlet-shear-heating --measured "
+           "tribodyn film paper-fluid-1 --temperature 40,100 --measured "
            "film.csv"},
           0.009525,
           true,

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "client/cpp/plot/footer.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
 
@@ -81,6 +82,9 @@ MapPicture map_of(const std::vector<RigRow>& rows, const RigView& view, const Ri
     if (&each == &x || &each == &y || (settings.*each.values).empty()) continue;
     out.footer += " " + std::string(each.title) + ": " +
                   significant(each.factor * (settings.*each.values).front(), 4) + ".";
+  }
+  for (const std::string& each : warning_footers(rig_warnings(rows, view))) {
+    out.footer += " " + each;
   }
   return out;
 }

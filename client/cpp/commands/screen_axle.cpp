@@ -220,19 +220,18 @@ struct Decisions {
 };
 
 Decisions decisions_of(const ScreenFlags& flags, const Screening& screening,
-                       const std::vector<CandidateFigures>& ranking) {
+                       const std::vector<CandidateFigures>& ranking, Connection& connection) {
   Decisions out;
   if (!ranking.front().refusal.empty()) return out;
   if (!flags.pareto_column.empty()) {
     out.front = screening_front(screening, ranking, flags.pareto_column, flags.wants_most);
   }
   if (flags.wants_effects) {
-    out.effects = screening_effects(screening, ranking);
-    if (!out.effects) {
-      throw Failure(kExitUsage,
-                    "--effects: too few candidates for as many columns; give at least two more "
-                    "candidates with figures than columns that differ");
-    }
+    v1::EstimateCandidateEffectsRequest request;
+    request.set_name(screening.campaign);
+    *request.mutable_condition_weights() = {screening.weights.begin(), screening.weights.end()};
+    out.effects = screening_effects(screening, accepted_candidates(screening.table),
+                                    connection.estimate_candidate_effects(request));
   }
   return out;
 }
@@ -245,11 +244,18 @@ int run_axle_screen(ScreenFlags& flags, Connection& connection, const CommonOpti
   Screening screening;
   const bool is_complete = compute(flags, schema, connection, options, interrupts, screening);
   write_point_files(flags, screening);
+  if (!screening.campaign.empty()) {
+    v1::RankCandidatesRequest request;
+    request.set_name(screening.campaign);
+    *request.mutable_condition_weights() = {screening.weights.begin(), screening.weights.end()};
+    set_warnings(accepted_candidates(screening.table), figures_ranking(connection, request),
+                 screening);
+  }
   const std::vector<CandidateFigures> ranking = ranked(screening);
   const RankingConfidence confidence = flags.leaves_out_uncertainty
                                            ? RankingConfidence()
                                            : confidence_of(flags, screening, ranking, connection);
-  const auto [front, effects] = decisions_of(flags, screening, ranking);
+  const auto [front, effects] = decisions_of(flags, screening, ranking, connection);
   std::map<std::string, std::string> members;
   if (front) members["pareto_front"] = front_json(screening, *front);
   if (effects) members["main_effects"] = effects_json(*effects);

@@ -130,7 +130,7 @@ void add_screen_flags(FlagList& list, ScreenFlags& flags) {
   list.group("Decisions");
   add_uncertainty_flag(list, flags.uncertainties);
   list.number("--confidence", {"-", "0.5 to 0.9999", "0.95"},
-              "Probability from which on two candidates can be told apart; others are ties",
+              "Candidates are tied with the best one if this interval of the difference holds 0",
               [&flags](double value) { flags.confidence = value; });
   list.toggle("--no-uncertainty", "Leave out the uncertainty of the inputs.",
               [&flags] { flags.leaves_out_uncertainty = true; });
@@ -144,7 +144,7 @@ void add_screen_flags(FlagList& list, ScreenFlags& flags) {
   list.toggle("--pareto-most", "In the Pareto front more of the column is better.",
               [&flags] { flags.wants_most = true; });
   list.toggle("--effects",
-              "Also print the main effects of all columns on the mean inefficiency, with their "
+              "Also print the main effects of the parameters on the mean inefficiency, with their "
               "intervals.",
               [&flags] { flags.wants_effects = true; });
   add_plot_flag(list, "Also draw what --pareto and --effects compute, as SVG.", flags.plot_path);

@@ -153,7 +153,7 @@ void read_rig_rows(Connection& connection, const v1::Campaign& campaign,
                          {"load_newtons", "entrainment_speed_metres_per_second",
                           "slide_roll_ratio_percent", "supply_temperature_celsius"});
   for (const std::string& each : rig_columns()) options.columns.push_back(each);
-  options.columns.emplace_back("refusal_number");
+  options.columns.insert(options.columns.end(), {"verdict_withheld", "refusal_number"});
   connection.stream_campaign(
       campaign.name(), options,
       [&](const v1::HistorySchema& schema) {

@@ -131,14 +131,14 @@ int run_rig_screen(const ScreenFlags& flags, Connection& connection, const Commo
                           *request.mutable_second()->mutable_figure(), complaints);
     if (!complaints.empty()) throw Failure(kExitUsage, joined(complaints, "\n"));
     add("pareto_front",
-        front_answer_text(request, connection.find_pareto_candidates(request), format));
+        front_answer_text(request, connection.find_pareto_candidates(request), best, format));
   }
   if (flags.wants_effects) {
     v1::EstimateCandidateEffectsRequest request;
     request.set_name(campaign.name());
     *request.mutable_figure() = ranking.objective().figure();
     add("main_effects",
-        effects_answer_text(request, connection.estimate_candidate_effects(request), format));
+        effects_answer_text(request, connection.estimate_candidate_effects(request), best, format));
   }
   if (format == OutputFormat::kTable) {
     const std::string program = program_of(connection), id = resource_id(campaign.name());

@@ -8,6 +8,7 @@
 #include "client/cpp/report/html.h"
 #include "client/cpp/text/csv.h"
 #include "client/cpp/text/inputs.h"
+#include "client/cpp/text/output.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
@@ -268,20 +269,11 @@ CsvRow number_row(const PaperFigure& figure, const std::string& statement,
           {"value", shortest(evidence.value)}};
 }
 
-std::string quoted_in_json(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + '"';
-}
-
 std::string numbers_json(const std::vector<Evidence>& evidence) {
   std::string out = "[";
   for (const Evidence& each : evidence) {
-    out += (out.size() == 1 ? "" : ", ") + ("{\"quantity\": " + quoted_in_json(each.quantity)) +
-           ", \"unit\": " + quoted_in_json(each.unit) + ", \"at\": " + quoted_in_json(each.at) +
+    out += (out.size() == 1 ? "" : ", ") + ("{\"quantity\": " + json_quoted(each.quantity)) +
+           ", \"unit\": " + json_quoted(each.unit) + ", \"at\": " + json_quoted(each.at) +
            ", \"value\": " + shortest(each.value) + "}";
   }
   return out + "]";
@@ -340,13 +332,13 @@ std::string paper_json(const std::vector<PaperChapter>& chapters) {
   std::string out = "{\"figures\": [";
   for (const PaperChapter& chapter : chapters) {
     out += (&chapter == &chapters.front() ? "\n" : ",\n") +
-           (" {\"figure\": " + quoted_in_json(chapter.figure->name)) +
-           ", \"title\": " + quoted_in_json(chapter.figure->title) + ", \"findings\": [";
+           (" {\"figure\": " + json_quoted(chapter.figure->name)) +
+           ", \"title\": " + json_quoted(chapter.figure->title) + ", \"findings\": [";
     for (const Finding& finding : chapter.findings) {
       out += (&finding == &chapter.findings.front() ? "\n" : ",\n") +
-             ("  {\"statement\": " + quoted_in_json(finding.statement)) +
-             ", \"verdict\": " + quoted_in_json(verdict_look(finding.verdict).text) +
-             ", \"rule\": " + quoted_in_json(finding.rule) +
+             ("  {\"statement\": " + json_quoted(finding.statement)) +
+             ", \"verdict\": " + json_quoted(verdict_look(finding.verdict).text) +
+             ", \"rule\": " + json_quoted(finding.rule) +
              ", \"numbers\": " + numbers_json(finding.evidence) + "}";
     }
     out += "], \"variants\": " + numbers_json(chapter.variants) + "}";
@@ -356,13 +348,16 @@ std::string paper_json(const std::vector<PaperChapter>& chapters) {
 
 std::string paper_page(const std::vector<PaperChapter>& chapters, const PaperResults& results) {
   std::string body =
-      html_paragraph(std::string("What the model says of the figures and statements of ") + kPaper +
-                     ", computed with the equations of the paper, misprints corrected, with model "
-                     "version " +
-                     results.model_version() +
-                     ". Measured points of the paper are not printed as numbers: statements are "
-                     "compared by their words, each by the rule below it. Losses are those of the "
-                     "gear mesh.") +
+      html_paragraph(
+          std::string("What the model says of the figures and statements of ") + kPaper +
+          ", computed with the equations of the paper, misprints corrected, with model "
+          "version " +
+          results.model_version() +
+          " and the preset `paper` in every figure and variant: without shear heating of "
+          "the inlet, and with load sharing as in eq 41, unless a variant states them. "
+          "Measured points of the paper are not printed as numbers: statements are "
+          "compared by their words, each by the rule below it. Losses are those of the "
+          "gear mesh.") +
       html_paragraph(
           "The paper does not print the car, the roughness of the flanks, the shear "
           "thinning of the lubricants, the mesh data, inertias and damping of the gear "

@@ -26,6 +26,7 @@ void switch_on(const std::string& path, v1::ModelOptions& options) {
 
 v1::ModelOptions model_options_of(const std::vector<std::string>& switches) {
   v1::ModelOptions out;
+  out.set_preset(v1::ModelOptions::PAPER);
   for (const std::string& path : switches) {
     if (path == "houpert") {
       out.set_pressure_viscosity_index(v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_HOUPERT);

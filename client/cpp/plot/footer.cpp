@@ -1,18 +1,16 @@
 #include "client/cpp/plot/footer.h"
 
 #include <algorithm>
-#include <cctype>
-#include <map>
 #include <set>
 #include <utility>
 
 #include "client/cpp/text/inputs.h"
 #include "client/cpp/text/text.h"
-#include "client/cpp/text/warnings.h"
 
 namespace tribodyn::client {
 namespace {
 
+constexpr char kHatchedStart[] = "Hatched: ";
 constexpr double kFooterSize = 11.5;
 constexpr int kLongestLabel =
     20;  // characters; longer labels do not fit beside the frame of a curve
@@ -32,50 +30,25 @@ std::string elided(const std::string& text, int longest) {
   return start + "\xE2\x80\xA6";
 }
 
-std::string ids_text(const std::vector<std::string>& names) {
-  std::vector<std::string> ids;
-  ids.reserve(names.size());
-  for (const std::string& name : names) ids.push_back(resource_id(name));
-  return joined(ids, ", ");
-}
-
-std::string warning_text(const CurveWarning& warning, bool is_curve) {
-  std::string start;
-  if (is_curve && !warning.mark.empty()) start = "Strip " + warning.mark + ": ";
-  if (is_curve && forbids_ranking(warning.code)) start = "Hatched: ";
-  std::string text = start + warning_words(warning.code);
-  if (start.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  if (is_curve) text += ", at " + warning.speeds_text;
-  if (!warning.names.empty()) text += " (" + ids_text(warning.names) + ")";
-  return text + " [" + warning.code + "].";
-}
-
 /// Returns the warnings about fluids and the surface. A warning names its fluids only if it does
 /// not concern all of them.
 std::vector<std::string> input_texts(const std::vector<v1::Simulation>& simulations) {
-  std::map<std::string, std::vector<std::string>> names;  // by code
-  std::set<std::string> lubricants;
-  for (const v1::Simulation& simulation : simulations) {
-    lubricants.insert(simulation.lubricant());
-    std::set<std::string> codes;  // a set: some warnings repeat for every measurement
-    for (const v1::RangeWarning& warning : simulation.result().input_warnings()) {
-      if (codes.insert(warning.code()).second) {
-        std::vector<std::string>& concerned = names[warning.code()];
-        // Curves of one lubricant at several temperatures stand together.
-        if (concerned.empty() || concerned.back() != simulation.lubricant()) {
-          concerned.push_back(simulation.lubricant());
-        }
-      }
+  std::vector<std::string> lubricants;
+  for (const v1::Simulation& each : simulations) {
+    // Curves of one lubricant at several temperatures stand together.
+    const std::string id = resource_id(each.lubricant());
+    if (std::find(lubricants.begin(), lubricants.end(), id) == lubricants.end()) {
+      lubricants.push_back(id);
     }
   }
-  std::vector<std::string> texts;
-  for (const auto& [code, concerned] : names) {
-    std::string text = warning_words(code);
-    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-    if (concerned.size() < lubricants.size()) text += " (" + ids_text(concerned) + ")";
-    texts.push_back(text + " [" + code + "].");
+  WarningCollector collector({""}, "", "", lubricants);
+  for (const v1::Simulation& each : simulations) {
+    const auto subject =
+        std::find(lubricants.begin(), lubricants.end(), resource_id(each.lubricant()));
+    collector.add(each.result().input_warnings(),
+                  static_cast<std::size_t>(subject - lubricants.begin()), 0);
   }
-  return texts;
+  return warning_footers(collector.warnings());
 }
 
 /// Returns "Model version V; hash of inputs 1: 0123456789ab, 2: ..."
@@ -103,11 +76,24 @@ std::vector<std::string> footer_texts(const std::vector<v1::Simulation>& simulat
   if (simulations.empty()) return texts;
   const bool is_curve = simulations.front().has_inefficiency_curve();
   for (const CurveWarning& warning : curve_warnings(simulations)) {
-    texts.push_back(warning_text(warning, is_curve));
+    texts.push_back(footer_text(warning, !is_curve               ? ""
+                                         : !warning.mark.empty() ? "Strip " + warning.mark + ": "
+                                         : withholds_verdict(warning.level) ? kHatchedStart
+                                                                            : ""));
   }
   for (std::string& text : input_texts(simulations)) texts.push_back(std::move(text));
   texts.push_back(identity_text(simulations));
   return texts;
+}
+
+std::vector<std::string> warning_footers(const std::vector<ShownWarning>& warnings,
+                                         bool is_hatched) {
+  std::vector<std::string> out;
+  for (const ShownWarning& each : warnings) {
+    out.push_back(
+        footer_text(each, is_hatched && withholds_verdict(each.level) ? kHatchedStart : ""));
+  }
+  return out;
 }
 
 std::vector<std::string> footer_lines(const std::vector<std::string>& texts, double width) {

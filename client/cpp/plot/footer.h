@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "client/cpp/plot/svg.h"
+#include "client/cpp/text/warnings.h"
 #include "tribodyn/v1/simulations.pb.h"
 
 namespace tribodyn::client {
@@ -12,6 +13,11 @@ namespace tribodyn::client {
 /// warning in plain words with its speeds, then the model's version and the hash of each
 /// simulation's inputs. One sentence per entry, not wrapped.
 std::vector<std::string> footer_texts(const std::vector<v1::Simulation>& simulations);
+
+/// Returns a sentence for each warning; with `is_hatched` those that withhold a verdict begin with
+/// "Hatched: ".
+std::vector<std::string> warning_footers(const std::vector<ShownWarning>& warnings,
+                                         bool is_hatched = false);
 
 /// Wraps the texts to `width` pixels; one line per entry.
 std::vector<std::string> footer_lines(const std::vector<std::string>& texts, double width);

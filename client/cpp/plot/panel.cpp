@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace tribodyn::client {
 namespace {
@@ -309,6 +310,19 @@ Look look_of(std::size_t index) {
   const auto& [dashes, side_dashes] = kDashes.at(index / kColours.size());
   return {kColours[index % kColours.size()], dashes, side_dashes,
           kMarkers[index % kMarkers.size()]};
+}
+
+std::pair<double, double> widest_range(const std::vector<std::pair<double, double>>& ranges) {
+  return *std::max_element(ranges.begin(), ranges.end(), [](const auto& a, const auto& b) {
+    return a.second - a.first < b.second - b.first;
+  });
+}
+
+void hatch(std::vector<std::pair<double, double>> ranges, Panel& panel) {
+  if (ranges.empty()) return;
+  panel.hatch_note = kHatchNote;
+  panel.hatch_note_range = widest_range(ranges);
+  panel.hatched = std::move(ranges);
 }
 
 void draw_panel(const Panel& panel, Svg& svg) {

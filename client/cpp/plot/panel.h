@@ -22,6 +22,8 @@ struct Look {
   Marker marker;
 };
 inline constexpr char kHatchColour[] = "#c9a55c";
+/// What stands on hatched ranges.
+inline constexpr char kHatchNote[] = "do not rank oils here";
 inline constexpr std::size_t kDistinctLooks = 24;
 /// Returns the look of the fluid at `index`. Throws std::out_of_range from kDistinctLooks on.
 Look look_of(std::size_t index);
@@ -76,6 +78,12 @@ struct Panel {
   std::vector<MapCell> cells;
   std::vector<Series> series;
 };
+
+/// Returns the widest range; requires one.
+std::pair<double, double> widest_range(const std::vector<std::pair<double, double>>& ranges);
+
+/// Hatches ranges in which oils must not be ranked, with that note in the widest one.
+void hatch(std::vector<std::pair<double, double>> ranges, Panel& panel);
 
 void draw_panel(const Panel& panel, Svg& svg);
 

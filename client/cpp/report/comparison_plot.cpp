@@ -4,11 +4,14 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <vector>
 
 #include "client/cpp/plot/footer.h"
 #include "client/cpp/plot/panel.h"
 #include "client/cpp/plot/svg.h"
+#include "client/cpp/report/comparison_report.h"
+#include "client/cpp/text/inputs.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
@@ -19,6 +22,20 @@ constexpr double kComparisonLeft = 80;
 constexpr double kComparisonTop = 112;
 constexpr double kComparisonPanelHeight = 270;
 constexpr double kComparisonPanelPitch = 350;  ///< from one panel to the next
+
+/// Hatches the speeds at which a warning withholds the verdict on a lubricant, at any sump
+/// temperature.
+void add_hatching(const v1::ComparePointsRequest& request,
+                  const v1::ComparePointsResponse& response, Panel& panel) {
+  std::map<double, bool> is_withheld;  // by speed
+  for (int k = 0; k < request.conditions_size(); ++k) {
+    bool& each = is_withheld[request.conditions(k).speed_kilometres_per_hour()];
+    for (const v1::ComparedLubricant& lubricant : response.lubricants()) {
+      each = each || !withheld_by(lubricant.points(k).warnings()).empty();
+    }
+  }
+  hatch(bands_where(is_withheld), panel);
+}
 
 double plotted_sump(const v1::PointCondition& condition) {
   return condition.has_sump_temperature_celsius() ? condition.sump_temperature_celsius() : 40;
@@ -122,7 +139,7 @@ Panel differences_panel(const v1::ComparePointsRequest& request,
       Series series =
           series_of_figure(request, static_cast<std::size_t>(i), j, sumps[j], [&](int k) {
             const v1::ComparedDifference& difference = lubricant.differences(k);
-            return difference.has_difference_percent() ? &difference.difference_percent() : nullptr;
+            return states_interval(difference) ? &difference.difference_percent() : nullptr;
           });
       for (const int k : sumps[j].conditions) {
         series.hollow.push_back(lubricant.differences(k).verdict() ==
@@ -135,8 +152,13 @@ Panel differences_panel(const v1::ComparePointsRequest& request,
   return out;
 }
 
-std::vector<std::string> comparison_footer(const v1::ComparePointsResponse& response) {
-  std::vector<std::string> out;
+std::vector<std::string> comparison_footer(const v1::ComparePointsRequest& request,
+                                           const v1::ComparePointsResponse& response) {
+  std::vector<std::string> sumps;
+  for (const PlottedSump& each : by_sump(request)) {
+    sumps.push_back(shortest(each.celsius) + " \xC2\xB0\x43");
+  }
+  std::vector<std::string> out = {"Sump " + joined(sumps, ", ") + ". " + response.not_included()};
   out.push_back("Bands: 95 % intervals by the stated uncertainties of the inputs, from " +
                 std::to_string(response.draws()) +
                 " draws; those of differences include the solver's error." +
@@ -145,8 +167,24 @@ std::vector<std::string> comparison_footer(const v1::ComparePointsResponse& resp
                        "lubricants share leave the difference, so that bands of the upper picture "
                        "may overlap where the difference is sure."
                      : ""));
-  out.push_back("Model version " + response.model_version() + "; " + response.gear_set_revision() +
-                ", " + response.surface_revision() + ", " + response.vehicle_revision() + ".");
+  std::vector<std::string> unstated;
+  for (const v1::ComparedLubricant& each : response.lubricants()) {
+    if (!each.uncertainty_stated()) unstated.push_back(resource_id(each.lubricant_revision()));
+  }
+  if (!unstated.empty()) out.push_back("Uncertainty not stated: " + joined(unstated, ", ") + ".");
+  for (const v1::ComparedLubricant& each : response.lubricants()) {
+    const std::string refusal = refusal_text(request, each);
+    if (!refusal.empty()) {
+      out.push_back("No figure of " + resource_id(each.lubricant_revision()) + ": " + refusal +
+                    ".");
+    }
+  }
+  for (std::string& each : warning_footers(comparison_warnings(request, response), true)) {
+    out.push_back(std::move(each));
+  }
+  out.push_back("Model " + model_options_text(request.model_options()) + ", version " +
+                response.model_version() + "; " + response.gear_set_revision() + ", " +
+                response.surface_revision() + ", " + response.vehicle_revision() + ".");
   return out;
 }
 
@@ -156,14 +194,16 @@ std::string comparison_plot(const v1::ComparePointsRequest& request,
                             const v1::ComparePointsResponse& response) {
   const bool has_differences = response.lubricants_size() > 1;
   const std::vector<std::string> lines =
-      footer_lines(comparison_footer(response), kComparisonWidth - 2 * kComparisonLeft);
+      footer_lines(comparison_footer(request, response), kComparisonWidth - 2 * kComparisonLeft);
   const double footer_top = kComparisonTop + kComparisonPanelPitch * (has_differences ? 2 : 1);
   Svg svg(kComparisonWidth, footer_top + kFooterPitch * static_cast<double>(lines.size()));
   svg.text({kComparisonLeft, 40},
            has_differences ? "Which lubricant loses less, and how sure that is"
                            : "What the lubricant loses, and how sure that is",
            {21, "start", "#111", true, 0});
-  draw_panel(figures_panel(request, response), svg);
+  Panel figures = figures_panel(request, response);
+  add_hatching(request, response, figures);
+  draw_panel(figures, svg);
   if (has_differences) draw_panel(differences_panel(request, response), svg);
   draw_footer(lines, {kComparisonLeft, footer_top}, svg);
   return svg.finish();

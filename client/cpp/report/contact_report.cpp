@@ -10,6 +10,7 @@
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
+#include "client/cpp/text/warnings.h"
 
 namespace tribodyn::client {
 namespace {
@@ -51,6 +52,7 @@ constexpr std::array kQuantities = {
     Quantity{"pressure_viscosity_index", "pressure-viscosity index", "Z", "", 1, 0, "33"},
     Quantity{"central_film_thickness_metres", "central film thickness", "h_cen", "um", 1e6, 0,
              "12"},
+    Quantity{"inlet_heating_factor", "film factor of inlet shear heating", "", "", 1, 0, ""},
     Quantity{"film_ratio", "film ratio", "lambda_s", "", 1, 0, ""},
     Quantity{"shear_rate_per_second", "shear rate", "gamma_dot", "1e6/s", 1e-6, 0, "18"},
     Quantity{"contact_temperature_kelvin", "contact temperature", "T_c", "C", 1, -kZeroCelsius,
@@ -75,11 +77,13 @@ constexpr std::array kQuantities = {
     Quantity{"friction_coefficient", "friction coefficient", "mu", "", 1, 0, ""},
 };
 
-/// Returns the standard uncertainty of a quantity; empty if no stated uncertainty moves it.
+/// Returns half the 95 % interval of a quantity; empty if no stated uncertainty moves it.
 std::string input_error(const v1::EvaluateContactResponse& contact, const Quantity& quantity) {
   for (const v1::UncertainContactFigure& each : contact.uncertainties()) {
     if (each.figure() == quantity.field) {
-      return significant(quantity.factor * each.value().standard_uncertainty(), 2);
+      const v1::UncertainFigure& figure = each.value();
+      const double width = figure.interval_maximum() - figure.interval_minimum();
+      return significant(0.5 * quantity.factor * width, 2);
     }
   }
   return "";
@@ -91,7 +95,7 @@ std::string contact_report(const v1::EvaluateContactResponse& contact) {
   Table table({{"Quantity", "", Table::Align::kLeft},
                {"Symbol", "", Table::Align::kLeft},
                {"Value", ""},
-               {"+/- inputs", ""},
+               {"+/- 95 %", ""},
                {"Unit", "", Table::Align::kLeft},
                {"Eq", ""}});
   for (const Quantity& quantity : kQuantities) {
@@ -104,6 +108,9 @@ std::string contact_report(const v1::EvaluateContactResponse& contact) {
   std::string text = table.text();
   Sheet sheet;
   add_contact_uncertainty(contact, sheet);
+  WarningCollector warnings({""}, "", "", {""});
+  warnings.add(contact.range_warnings(), 0, 0);
+  add_warnings(warnings.warnings(), sheet);
   add_input_warnings(contact.input_warnings(), sheet);
   text +=
       std::string("\nstatus ") +

@@ -231,12 +231,10 @@ Hatching hatching_of(const std::vector<v1::Simulation>& simulations) {
   Hatching hatching;
   for (const CurveWarning& warning : curve_warnings(simulations)) {
     if (!warning.mark.empty()) hatching.strips.push_back({warning.mark, warning.bands});
-    if (!forbids_ranking(warning.code)) continue;
+    if (!withholds_verdict(warning.level)) continue;
     hatching.bands.insert(hatching.bands.end(), warning.bands.begin(), warning.bands.end());
-    hatching.note = "do not rank oils here";
-    hatching.note_band = *std::max_element(
-        warning.bands.begin(), warning.bands.end(),
-        [](const auto& x, const auto& y) { return x.second - x.first < y.second - y.first; });
+    hatching.note = kHatchNote;
+    hatching.note_band = widest_range(warning.bands);
   }
   hatching.bands = merged_bands(std::move(hatching.bands));
   return hatching;

@@ -45,7 +45,7 @@ Table curve_table(const v1::Simulation& simulation, const CurveUncertainty* unce
                                         {"contact", "lost"}};
   constexpr std::ptrdiff_t kUncertaintyColumn = 2;
   if (uncertainty != nullptr) {
-    columns.insert(columns.begin() + kUncertaintyColumn, {"inefficiency", "inputs", kDecimal});
+    columns.insert(columns.begin() + kUncertaintyColumn, {"inefficiency", "+/- 95 %", kDecimal});
   }
   Table table(columns);
   for (const v1::CurvePoint& point : simulation.result().points()) {
@@ -142,15 +142,6 @@ void add_solver_remarks(const v1::SimulationResult& result, Sheet& sheet) {
     sheet.remark("The error of " + std::to_string(without_estimate) +
                  " of the speeds is not estimated: their figures are given to three digits.");
   }
-}
-
-/// Returns e.g. "BASE_OIL_UNSPECIFIED PARAMETER_ESTIMATED".
-std::string codes_of(const InputWarnings& warnings) {
-  std::string text;
-  for (const v1::RangeWarning& warning : warnings) {
-    text += (text.empty() ? "" : " ") + warning.code();
-  }
-  return text;
 }
 
 std::string direction_word(const v1::Simulation& simulation) {

@@ -8,6 +8,7 @@
 #include "client/cpp/text/csv.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/warnings.h"
 
 namespace tribodyn::client {
 namespace {
@@ -62,20 +63,27 @@ CsvRow csv_row_of(const v1::EvaluateCycleResponse& answer, int i) {
   for (const v1::CycleLubricant& lubricant : answer.lubricants()) {
     const std::string start = cycle_oil(lubricant) + "_";
     const auto add = [&](const char* name, double figure) {
-      out.emplace_back(start + name, shortest(figure));
+      out.emplace_back(start + name, std::isnan(figure) ? "" : shortest(figure));
     };
     const bool is_refused = lubricant.parts().empty();
     const v1::CyclePartLoss none;
     const v1::CyclePartLoss& loss = is_refused ? none : lubricant.parts(i);
     if (is_refused) {
-      for (const char* name : {"input_joules", "loss_joules", "inefficiency_percent"}) {
+      for (const char* name : {"input_joules", "loss_joules", "inefficiency_percent", "warnings",
+                               "verdict_withheld"}) {
         out.emplace_back(start + name, "");
       }
+      out.emplace_back(start + "refusal",
+                       lubricant.refusal_reason() + ": " + lubricant.refusal_message());
       continue;
     }
     add("input_joules", loss.input_joules());
     add("loss_joules", loss.loss_joules());
     add("inefficiency_percent", loss.inefficiency_percent());
+    out.emplace_back(start + "warnings", codes_of(lubricant.warnings()));
+    out.emplace_back(start + "verdict_withheld",
+                     withheld_by(lubricant.warnings()).empty() ? "false" : "true");
+    out.emplace_back(start + "refusal", "");
   }
   return out;
 }
@@ -109,11 +117,52 @@ std::string error_text(const v1::CycleLubricant& lubricant) {
              ? std::string("of the solver not known, ")
              : "of the solver at most " + significant(1e-3 * lubricant.solver_error_joules(), 2) +
                    " kJ, ";
-  out += std::to_string(lubricant.points()) + " points\n";
-  for (const v1::RangeWarning& each : lubricant.warnings()) {
-    out += "  " + printable(each.message()) + ". [" + printable(each.code()) + "]\n";
+  return out + std::to_string(lubricant.points()) + " points\n";
+}
+
+/// Returns the warnings of the points, and of the inputs if `has_inputs`, with the lubricants that
+/// have them.
+std::vector<ShownWarning> cycle_warnings(const v1::EvaluateCycleResponse& answer, bool has_inputs) {
+  std::vector<std::string> names;
+  for (const v1::CycleLubricant& each : answer.lubricants()) names.push_back(cycle_oil(each));
+  WarningCollector out({""}, "", "", names);
+  for (int k = 0; k < answer.lubricants_size(); ++k) {
+    const auto subject = static_cast<std::size_t>(k);
+    out.add(answer.lubricants(k).warnings(), subject, 0);
+    if (has_inputs) out.add(answer.lubricants(k).input_warnings(), subject, 0);
   }
-  return out;
+  return out.warnings();
+}
+
+/// Returns the notes about the lubricants, each once with those that have it.
+std::string notes_text(const v1::EvaluateCycleResponse& answer) {
+  std::vector<ShownWarning> notes;
+  for (const v1::CycleLubricant& lubricant : answer.lubricants()) {
+    const std::string name = answer.lubricants_size() == 1 ? "" : cycle_oil(lubricant);
+    for (const v1::RangeWarning& each : lubricant.input_warnings()) {
+      const auto known = std::find_if(notes.begin(), notes.end(), [&each](const auto& note) {
+        return note.code == each.code() && note.message == each.message();
+      });
+      if (known == notes.end()) {
+        notes.push_back(shown_warning(each));
+        notes.back().where = name;
+      } else {
+        known->where += ", " + name;
+      }
+    }
+  }
+  if (notes.empty()) return "";
+  Sheet sheet;
+  sheet.heading("Notes on lubricant and surface");
+  for (const ShownWarning& each : notes) sheet.remark(note_sentence(each));
+  return "\n" + sheet.text();
+}
+
+/// Returns the words for a warning that withholds the verdict on one of two lubricants; empty if
+/// none does.
+std::string withheld_of_two(const v1::CycleLubricant& one, const v1::CycleLubricant& other) {
+  const std::string summary = withheld_by(one.warnings());
+  return summary.empty() ? withheld_by(other.warnings()) : summary;
 }
 
 }  // namespace
@@ -160,11 +209,21 @@ std::string cycle_text(const CycleRun& run, OutputFormat format) {
   }
   std::string out = run.name + ", " + sump_text(answer) + ": mesh loss, quasi-steady, " +
                     answer.model_version() + "\n\n" + table.text() + "\n";
-  for (const v1::CycleLubricant& each : answer.lubricants()) out += error_text(each);
-  return out + wrapped(
-                   "Energy in: at the pinion in drive, at the wheels in coast, where the axle "
-                   "counts as transmitting all of the braking. Standstill: speeds below 0.1 km/h.",
-                   0);
+  const v1::CycleLubricant& first = answer.lubricants(0);
+  for (const v1::CycleLubricant& each : answer.lubricants()) {
+    out += error_text(each);
+    const std::string withheld = withheld_of_two(first, each);
+    if (&each != &first && !withheld.empty()) {
+      out += wrapped("verdict " + withheld_text(withheld), 2);
+    }
+  }
+  out += wrapped(answer.not_included(), 0) +
+         wrapped(
+             "Energy in: at the pinion in drive, at the wheels in coast, where the axle "
+             "counts as transmitting all of the braking. Standstill: speeds below 0.1 km/h.",
+             0);
+  const std::string warnings = warnings_text(cycle_warnings(answer, false));
+  return out + notes_text(answer) + (warnings.empty() ? "" : "\n" + warnings);
 }
 
 std::string cycle_pieces_csv(const CycleRun& run) {
@@ -217,11 +276,15 @@ std::string cycle_plot(const CycleRun& run) {
     loss.series.push_back(std::move(series));
   }
   loss.shows_samples = true;
-  const std::vector<std::string> below =
-      footer_lines({"Quasi-steady points of a drive cycle; " + sump_text(answer) +
-                    "; model version " + answer.model_version() +
-                    ". Loss at the tooth contact only; it excludes bearings, churning and seals."},
-                   kWidth - 2 * kLeft);
+  std::vector<std::string> texts = {"Quasi-steady points of a drive cycle; " + sump_text(answer) +
+                                    "; model version " + answer.model_version() + ". " +
+                                    answer.not_included()};
+  const std::vector<ShownWarning> warnings = cycle_warnings(answer, true);
+  for (std::string& each : warning_footers(warnings, true)) texts.push_back(std::move(each));
+  if (!withheld_by(warnings).empty() && !driven.x.empty()) {
+    hatch({{driven.x.front(), driven.x.back()}}, loss);
+  }
+  const std::vector<std::string> below = footer_lines(texts, kWidth - 2 * kLeft);
   const double footer_top = kFirstTop + kPitch + 220 + 66;
   Svg svg(kWidth, footer_top + kFooterPitch * static_cast<double>(below.size()));
   svg.text({kLeft, 36}, "Drive cycle: " + run.name, {17, "start", "#111", true, 0});

@@ -129,6 +129,9 @@ void draw_stacks(const v1::ExplainPointsRequest& request, const v1::ExplainPoint
                significant(request.conditions(k).speed_kilometres_per_hour(), 4),
                {12, "middle", kExplanationInk, false, 0});
     }
+    if (!withheld_by(point.warnings()).empty()) {
+      svg.hatched_rectangle({x - pitch / 2, top}, pitch, kStackHeight, kHatchColour);
+    }
     if (point.causes().empty()) continue;
     double up = 0, down = 0;
     for (const v1::DifferenceCause& cause : causes) {
@@ -147,10 +150,11 @@ void draw_stacks(const v1::ExplainPointsRequest& request, const v1::ExplainPoint
            {12, "middle", kExplanationInk, false, 0});
 }
 
-std::vector<std::string> explanation_footer(const v1::ExplainPointsResponse& response) {
+std::vector<std::string> explanation_footer(const v1::ExplainPointsRequest& request,
+                                            const v1::ExplainPointsResponse& response) {
   const std::string a = resource_id(response.lubricant_revision());
   const std::string b = resource_id(response.other_lubricant_revision());
-  std::vector<std::string> out;
+  std::vector<std::string> out = {response.not_included()};
   out.push_back("Share: what a group of parameters of " + b + " adds to " + a +
                 ", averaged over all orders in which the six groups are exchanged (Shapley value). "
                 "The shares sum to the difference" +
@@ -159,6 +163,10 @@ std::vector<std::string> explanation_footer(const v1::ExplainPointsResponse& res
                     ? "Lines with ends: 95 % intervals from " + std::to_string(response.draws()) +
                           " draws of the uncertain inputs."
                     : "No input has a stated uncertainty.");
+  for (std::string& each :
+       warning_footers(explanation_warnings(request, response), response.points_size() > 1)) {
+    out.push_back(std::move(each));
+  }
   out.push_back("Model version " + response.model_version() + "; " + response.gear_set_revision() +
                 ", " + response.surface_revision() +
                 (response.other_surface_revision() == response.surface_revision()
@@ -178,7 +186,7 @@ std::string explanation_plot(const v1::ExplainPointsRequest& request,
   const double stacks_top = mean_bottom + 50;
   const double footer_top = (has_stacks ? stacks_top + kStackHeight + 44 : mean_bottom) + 30;
   const std::vector<std::string> lines =
-      footer_lines(explanation_footer(response), kExplanationWidth - 2 * kExplanationLeft);
+      footer_lines(explanation_footer(request, response), kExplanationWidth - 2 * kExplanationLeft);
   Svg svg(kExplanationWidth, footer_top + kFooterPitch * static_cast<double>(lines.size()));
   svg.text({kExplanationLeft, 40},
            "Why " + resource_id(response.other_lubricant_revision()) + " differs from " +

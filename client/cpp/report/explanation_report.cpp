@@ -29,10 +29,12 @@ int decimals_of(const v1::DrawnFigure& difference) {
   return decimals_of(std::max(difference.standard_uncertainty(), difference.solver_error()));
 }
 
+/// Returns the figure with its 95 % interval.
 std::string with_uncertainty(const v1::DrawnFigure& figure, int decimals) {
   return fixed(figure.value(), decimals) +
          (figure.standard_uncertainty() > 0
-              ? " +/- " + fixed(figure.standard_uncertainty(), decimals)
+              ? " (" + fixed(figure.interval_minimum(), decimals) + " to " +
+                    fixed(figure.interval_maximum(), decimals) + ")"
               : "");
 }
 
@@ -46,8 +48,7 @@ std::string mean_table(const v1::DifferenceExplanation& mean, bool has_uncertain
   std::vector<Table::Column> columns = {{"group of parameters", "", Align::kLeft},
                                         {"share", "% points", Align::kDecimal}};
   if (has_uncertainty) {
-    columns.insert(columns.end(), {{"+/- inputs", "% points", Align::kDecimal},
-                                   {"95 % interval", "% points", Align::kRight}});
+    columns.push_back({"95 % interval", "% points", Align::kRight});
   }
   columns.insert(columns.end(), {{"of difference", "%", Align::kRight},
                                  {"alone", "% points", Align::kDecimal},
@@ -61,7 +62,6 @@ std::string mean_table(const v1::DifferenceExplanation& mean, bool has_uncertain
                        const std::string& alone, const std::string& last, double in_watts) {
     std::vector<std::string> row = {label, fixed(share.value(), decimals)};
     if (has_uncertainty) {
-      row.push_back(fixed(share.standard_uncertainty(), decimals));
       row.push_back(fixed(share.interval_minimum(), decimals) + " to " +
                     fixed(share.interval_maximum(), decimals));
     }
@@ -207,6 +207,19 @@ std::vector<v1::DifferenceCause> ranked_causes(const v1::DifferenceExplanation& 
   return out;
 }
 
+std::vector<ShownWarning> explanation_warnings(const v1::ExplainPointsRequest& request,
+                                               const v1::ExplainPointsResponse& response) {
+  std::vector<std::string> places;
+  for (const v1::PointCondition& each : request.conditions()) {
+    places.push_back(significant(each.speed_kilometres_per_hour()));
+  }
+  WarningCollector out(places, "km/h", "all conditions", {""});
+  for (int k = 0; k < response.points_size(); ++k) {
+    out.add(response.points(k).warnings(), 0, static_cast<std::size_t>(k));
+  }
+  return out.warnings();
+}
+
 std::string explanation_report(const v1::ExplainPointsRequest& request,
                                const v1::ExplainPointsResponse& response) {
   const std::string a = resource_id(response.lubricant_revision());
@@ -233,7 +246,12 @@ std::string explanation_report(const v1::ExplainPointsRequest& request,
                " %, difference " + with_uncertainty(difference, decimals) +
                " percentage points; solver error of the difference at most " +
                fixed(difference.solver_error(), decimals_of(difference.solver_error())) + ".");
-  sheet.remark(main_cause_text(mean, a, b));
+  const std::vector<ShownWarning> warnings = explanation_warnings(request, response);
+  const std::string withheld = withheld_by(warnings);
+  sheet.remark(withheld.empty()
+                   ? main_cause_text(mean, a, b)
+                   : "Which of the two loses more is " + withheld_text(withheld) + ".");
+  sheet.remark(response.not_included());
   Sheet notes;
   notes.remark(
       "share: what a group of " + b +
@@ -245,9 +263,10 @@ std::string explanation_report(const v1::ExplainPointsRequest& request,
   const std::string losses = contact_loss_text(request, response);
   if (!losses.empty()) notes.remark(losses);
   notes.remark(has_uncertainty
-                   ? "+/-: standard uncertainty from " + std::to_string(response.draws()) +
+                   ? "In brackets: 95 % intervals from " + std::to_string(response.draws()) +
                          " draws of the uncertain inputs of both lubricants and of the scene."
                    : "No input has a stated uncertainty: the shares have none but the solver's.");
+  add_warnings(warnings, notes);
   std::string out = sheet.text() + "\n" + mean_table(mean, has_uncertainty) + "\n" + notes.text();
   if (conditions > 1 && conditions <= kListedConditions) {
     out += "\n" + conditions_table(request, response);
@@ -273,6 +292,9 @@ std::string explanation_csv(const v1::ExplainPointsRequest& request,
       append_fields(cause, "", row);
       append_fields(point.inefficiency_difference_percent(), "inefficiency_difference_percent.",
                     row);
+      row.emplace_back("warnings", condition == nullptr
+                                       ? codes_of(explanation_warnings(request, response))
+                                       : codes_of(point.warnings()));
       rows.push_back(std::move(row));
     }
   };

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "client/cpp/report/resource_report.h"
@@ -115,6 +117,28 @@ std::vector<Row> figure_rows(const v1::Lubricant& lubricant_a, const v1::Lubrica
   return rows;
 }
 
+/// The rows of boundary friction by temperature: one for each temperature of either table.
+std::vector<Row> friction_rows(const v1::Lubricant& a, const v1::Lubricant& b, bool full) {
+  const char* name = "asperity_friction_by_temperature";
+  std::map<double, std::pair<std::optional<double>, std::optional<double>>> values;
+  for (const auto& each : a.asperity_friction_by_temperature()) {
+    values[each.temperature_celsius()].first = each.asperity_friction_coefficient();
+  }
+  for (const auto& each : b.asperity_friction_by_temperature()) {
+    values[each.temperature_celsius()].second = each.asperity_friction_coefficient();
+  }
+  std::vector<Row> rows;
+  for (const auto& [celsius, value] : values) {
+    Row& row = rows.emplace_back();
+    row.label = "asperity friction coefficient at " + significant(celsius) + " C";
+    row.field = std::string(name) + "[" + shortest(celsius) + " C]";
+    set_values(row, value.first, value.second, full);
+    row.a_origin = provenance_word_of(a, name);
+    row.b_origin = provenance_word_of(b, name);
+  }
+  return rows;
+}
+
 std::vector<Row> class_rows(const v1::Lubricant& a, const v1::Lubricant& b) {
   std::vector<Row> rows;
   for (const char* name : {"base_oil_class", "condition"}) {
@@ -202,7 +226,7 @@ FluidDifference fluid_difference(const v1::Lubricant& a, const v1::Lubricant& b,
                                  OutputFormat format) {
   const bool full = format != OutputFormat::kTable;
   std::vector<Row> rows = figure_rows(a, b, full);
-  for (auto&& more : {class_rows(a, b), parameter_rows(a, b, full)}) {
+  for (auto&& more : {class_rows(a, b), parameter_rows(a, b, full), friction_rows(a, b, full)}) {
     rows.insert(rows.end(), more.begin(), more.end());
   }
   const auto equal =

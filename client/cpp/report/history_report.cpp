@@ -51,19 +51,21 @@ std::string history_summary(const v1::History& history) {
   return table.text();
 }
 
-std::string history_csv(const v1::History& history) {
+std::string history_csv(const v1::History& history, const std::string& warnings) {
   std::vector<std::string> cells;
   int rows = 0;
   for (const auto& column : history.columns()) {
     cells.push_back(column.name());
     rows = std::max(rows, column.values_size());
   }
+  cells.emplace_back("warnings");
   std::string text = csv_line(cells);
   for (int row = 0; row < rows; ++row) {
     cells.clear();
     for (const auto& column : history.columns()) {
       cells.push_back(row < column.values_size() ? shortest(column.values(row)) : "");
     }
+    cells.push_back(warnings);
     text += csv_line(cells);
   }
   return text;

@@ -18,7 +18,8 @@ std::string column_quantity(const std::string& column);
 /// Returns minimum, mean and maximum of each column; for flank slots only while they carry load.
 std::string history_summary(const v1::History& history);
 
-/// Returns a line per sample; the headers are the columns' names, with units.
-std::string history_csv(const v1::History& history);
+/// Returns a line per sample; the headers are the columns' names, with units. The last column has
+/// `warnings`, codes of the point.
+std::string history_csv(const v1::History& history, const std::string& warnings);
 
 }  // namespace tribodyn::client

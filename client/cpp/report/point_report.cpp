@@ -36,7 +36,8 @@ void add_losses(const v1::PointResult& result, const Precision& precision, Sheet
   const bool has_mean = result.has_inefficiency_energy_mean_percent();
   sheet.line(
       "inefficiency, energy mean", has_mean ? precision.estimated(mean, 4) : "-", "%",
-      (has_mean && precision.is_estimated() ? precision.error_of(mean) + " (solver); " : "") +
+      (has_mean && precision.is_estimated() ? "solver error " + precision.error_of(mean) + "; "
+                                            : "") +
           "loss energy / input energy");
   sheet.line("inefficiency, RMS",
              result.has_inefficiency_rms_percent()

@@ -54,7 +54,7 @@ std::string Precision::error_percent() const {
 std::string Precision::error_of(double value) const {
   if (!is_estimated_ || !std::isfinite(value)) return "-";
   const double error = relative_error_ * std::abs(value);
-  return "+/- " + (error == 0 ? "0" : fixed(error, std::max(0, decimals_of(error, 1))));
+  return error == 0 ? "0" : fixed(error, std::max(0, decimals_of(error, 1)));
 }
 
 std::string Precision::part(double value, double whole, int decimals) const {

@@ -16,7 +16,7 @@ class Precision {
   bool is_estimated() const { return is_estimated_; }
   /// Returns the solver's relative error in percent, e.g. "0.02"; "-" if it is not estimated.
   std::string error_percent() const;
-  /// Returns the solver's error of a figure in the unit of the figure, e.g. "+/- 0.0006"; "-" if it
+  /// Returns the solver's error of a figure in the unit of the figure, e.g. "0.0006"; "-" if it
   /// is not estimated.
   std::string error_of(double value) const;
 

@@ -16,25 +16,12 @@
 namespace tribodyn::client {
 namespace {
 
-std::string verdict_words(v1::ComparedDifference::Verdict verdict) {
-  switch (verdict) {
-    case v1::ComparedDifference::LOWER:
-      return "loses less";
-    case v1::ComparedDifference::HIGHER:
-      return "loses more";
-    case v1::ComparedDifference::CANNOT_BE_TOLD_APART:
-      return "cannot be told apart";
-    default:
-      return "-";
-  }
-}
-
 /// The mean of all speeds of each lubricant, and what its difference from the first amounts to.
 std::string verdict_table(const v1::ComparePointsResponse& comparison) {
   std::string out =
       "<table>\n" +
-      html_row({"lubricant", "mean inefficiency, energy mean", "95 % interval",
-                "difference, % points", "95 % interval", "P(lower)",
+      html_row({"lubricant", "mean inefficiency, energy mean, +/- 95 %", "difference, % points",
+                "95 % interval", "P(lower)",
                 "against " + resource_id(comparison.lubricants(0).lubricant_revision())},
                "th");
   const auto interval = [](const v1::UncertainFigure& each) {
@@ -46,13 +33,14 @@ std::string verdict_table(const v1::ComparePointsResponse& comparison) {
     const bool has_mean = lubricant.has_mean_inefficiency_percent();
     const v1::UncertainFigure& mean = lubricant.mean_inefficiency_percent();
     cells.push_back(has_mean ? with_errors(mean, "%") : "-");
-    cells.push_back(has_mean ? interval(mean) : "-");
     const v1::ComparedDifference& difference = lubricant.mean_difference();
     if (difference.has_difference_percent()) {
       cells.push_back(significant(difference.difference_percent().value(), 3));
-      cells.push_back(interval(difference.difference_percent()));
-      cells.push_back(fixed(100 * difference.lower_probability(), 0) + " %");
-      cells.push_back(verdict_words(difference.verdict()));
+      cells.push_back(states_interval(difference) ? interval(difference.difference_percent())
+                                                  : "-");
+      const double probability = difference.lower_probability();
+      cells.push_back(std::isnan(probability) ? "-" : fixed(100 * probability, 0) + " %");
+      cells.push_back(verdict_text(difference, withheld_by(comparison.lubricants(0), lubricant)));
     }
     out += html_row(cells, "td");
   }
@@ -84,18 +72,18 @@ std::string report_page(const ReportContents& contents) {
   const int speeds = contents.comparison_request.conditions_size();
   const std::string title = page_title(contents);
   std::string out;
-  out += html_paragraph(
-      "Losses of the gear mesh of a hypoid axle; bearings, churning and seals are not in "
-      "them. " +
-      study_text(first) + "; " + inputs_text(first) + ".");
+  out += html_paragraph(contents.comparison.not_included());
+  out += html_paragraph(study_text(first) + "; " + inputs_text(first) + "; model " +
+                        model_options_text(first.model_options()) + ".");
   out += html_chapter("Which loses less, and how sure that is");
   out += html_paragraph(
       "Mean of " + std::to_string(speeds) +
-      " speeds. +/- (inputs): standard uncertainty that the stated uncertainties of the "
-      "parameters make, from " +
-      std::to_string(contents.comparison.draws()) +
-      " draws; +/- (solver): estimated error of the solution.");
+      " speeds. +/-, or two ends where that is asymmetric: 95 % interval by the stated "
+      "uncertainties of the parameters, from " +
+      std::to_string(contents.comparison.draws()) + " draws.");
   out += verdict_table(contents.comparison);
+  out += html_preformatted(
+      warnings_text(comparison_warnings(contents.comparison_request, contents.comparison)));
   out += html_figure(curve_plot(contents.curves, contents.titles, contents.uncertainties),
                      "curves-", "Inefficiency against speed");
   for (std::size_t i = 0; i < contents.explanations.size(); ++i) {

@@ -142,7 +142,7 @@ std::string parameter_table(const Message& resource) {
   Table table({{"Parameter", "", Table::Align::kLeft},
                {"Value", ""},
                {"Unit", "", Table::Align::kLeft},
-               {"+/-", ""},
+               {"std. uncertainty", ""},
                {"Origin", "", Table::Align::kLeft},
                {"Source", "", Table::Align::kLeft}});
   Notes notes;
@@ -227,6 +227,13 @@ void add_identity(const Message& resource, Sheet& sheet) {
     const auto label = kLabels.find(field.name());
     line(label == kLabels.end() ? label_of_field(field.name()) : label->second,
          word_of(resource, field));
+  }
+  if (const auto* lubricant = dynamic_cast<const v1::Lubricant*>(&resource)) {
+    for (const auto& each : lubricant->asperity_friction_by_temperature()) {
+      sheet.line(
+          "asperity friction coefficient at " + significant(each.temperature_celsius()) + " C",
+          significant(each.asperity_friction_coefficient()));
+    }
   }
   line("labels", labels_text(resource));
   const int revision = revision_of(resource);

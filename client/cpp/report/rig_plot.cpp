@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "client/cpp/plot/footer.h"
 #include "client/cpp/plot/panel.h"
@@ -57,6 +58,17 @@ void add_rig_band(const RigRow& row, const RigView& view, Series& line) {
   };
   line.low.push_back(edge(&RigBand::interval_minimum));
   line.high.push_back(edge(&RigBand::interval_maximum));
+}
+
+/// Hatches the places at which a warning withholds the verdict on a fluid.
+template <class XOf>
+void hatch_withheld(const std::vector<RigRow>& rows, const XOf& x_of, Panel& panel) {
+  std::map<double, bool> is_withheld;
+  for (const RigRow& row : rows) {
+    bool& each = is_withheld[x_of(row)];
+    each = each || !withheld_by(row.warnings).empty();
+  }
+  hatch(bands_where(is_withheld), panel);
 }
 
 bool has_bands(const std::vector<RigRow>& rows, const RigView& view) {
@@ -119,6 +131,10 @@ std::string rig_plot(const std::vector<RigRow>& rows, const RigView& view,
     texts.emplace_back(
         "Bands: 95 % intervals by the stated uncertainties of the inputs; errors that curves share "
         "make bands overlap more than differences do.");
+  }
+  hatch_withheld(rows, x_of, panel);
+  for (std::string& each : warning_footers(rig_warnings(rows, view), true)) {
+    texts.push_back(std::move(each));
   }
   const std::vector<std::string> below = footer_lines(texts, kRigWidth - 2 * kRigLeft);
   const double footer_top = 90 + kRigPanelHeight + 66;

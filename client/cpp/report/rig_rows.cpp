@@ -30,6 +30,7 @@ CsvRow csv_row(const RigRow& row, const RigView& view, int draws) {
   out.emplace_back(std::string("measured_") + view.y, row.measured ? shortest(*row.measured) : "");
   out.emplace_back("residual_percent", residual ? shortest(*residual) : "");
   out.emplace_back("refusal", row.refusal);
+  out.emplace_back("warnings", codes_of(row.warnings));
   if (draws == 0) return out;
   for (const std::string& column : rig_columns()) {
     const auto band = row.bands.find(column);
@@ -45,14 +46,6 @@ CsvRow csv_row(const RigRow& row, const RigView& view, int draws) {
 }
 
 std::string json_of(const std::vector<RigRow>& rows, const RigView& view, const RigDraws& draws) {
-  const auto quoted = [](const std::string& text) {
-    std::string out = "\"";
-    for (const char c : text) {
-      if (c == '"' || c == '\\') out += '\\';
-      out += c;
-    }
-    return out + '"';
-  };
   std::string out = "{\"rows\": [";
   for (const RigRow& row : rows) {
     out += &row == &rows.front() ? "\n {" : ",\n {";
@@ -60,21 +53,23 @@ std::string json_of(const std::vector<RigRow>& rows, const RigView& view, const 
     for (const auto& [header, cell] : csv_row(row, view, draws.draws)) {
       if (cell.empty()) continue;
       const bool is_text = header == "lubricant" || header == "model" || header == "refusal" ||
+                           header == "warnings" ||
                            cell.find_first_of("NI") != std::string::npos;  // NaN, Infinity
-      out += (is_first ? "" : ", ") + quoted(header) + ": " + (is_text ? quoted(cell) : cell);
+      out += (is_first ? "" : ", ") + json_quoted(header) + ": " +
+             (is_text ? json_quoted(cell) : cell);
       is_first = false;
     }
     out += "}";
   }
-  out += "\n]";
+  out += "\n],\n\"warnings\": " + warnings_json(rig_warnings(rows, view));
   if (draws.draws > 0) {
     out += ",\n\"draws\": " + std::to_string(draws.draws) + ",\n\"inputs_without_uncertainty\": {";
     bool is_first_fluid = true;
     for (const auto& [fluid, inputs] : draws.exact_inputs) {
       std::vector<std::string> words;
-      for (const std::string& input : inputs) words.push_back(quoted(input));
-      out +=
-          (is_first_fluid ? "" : ",") + ("\n " + quoted(fluid)) + ": [" + joined(words, ", ") + "]";
+      for (const std::string& input : inputs) words.push_back(json_quoted(input));
+      out += (is_first_fluid ? "" : ",") + ("\n " + json_quoted(fluid)) + ": [" +
+             joined(words, ", ") + "]";
       is_first_fluid = false;
     }
     out += "\n}";
@@ -119,7 +114,7 @@ std::string table_of(const std::vector<RigRow>& rows, const RigView& view) {
   for (const ShownFigure& figure : kShownFigures) {
     columns.push_back({figure.title, figure.unit, kDecimal});
     if (has_bands && std::string(figure.column) == view.y) {
-      columns.push_back({"+/-", figure.unit, kDecimal});
+      columns.push_back({"+/- 95 %", figure.unit, kDecimal});
     }
   }
   if (is_measured) {
@@ -145,7 +140,10 @@ std::string table_of(const std::vector<RigRow>& rows, const RigView& view) {
         if (!has_bands || std::string(figure.column) != view.y) continue;
         const RigBand* band = shown_band(row, view);
         cells.push_back(
-            band == nullptr ? "" : significant(figure.factor * band->standard_uncertainty, 2));
+            band == nullptr
+                ? ""
+                : significant(
+                      0.5 * figure.factor * (band->interval_maximum - band->interval_minimum), 2));
       }
       if (const auto residual = residual_percent(row, view)) {
         cells.push_back(significant(*row.measured * view.y_factor, 4));
@@ -161,16 +159,18 @@ std::string table_of(const std::vector<RigRow>& rows, const RigView& view) {
 std::string draws_summary(const std::vector<RigRow>& rows, const RigView& view,
                           const RigDraws& draws) {
   if (draws.draws == 0) return "";
-  std::set<std::string> uncertain;
+  std::set<std::string> uncertain, computed;
   int refusing_rows = 0;
   for (const RigRow& row : rows) {
     if (shown_band(row, view) != nullptr) uncertain.insert(row.fluid);
+    if (!row.figures.empty()) computed.insert(row.fluid);
     if (row.refused_draws > 0) ++refusing_rows;
   }
+  if (computed.empty()) return "";
   Sheet sheet;
   sheet.heading("Uncertainty");
   if (!uncertain.empty()) {
-    sheet.remark("+/-: standard uncertainty by the stated uncertainties of the inputs, from " +
+    sheet.remark("+/-: half the 95 % interval by the stated uncertainties of the inputs, from " +
                  std::to_string(draws.draws) + " draws of them.");
   }
   if (refusing_rows > 0) {
@@ -181,7 +181,7 @@ std::string draws_summary(const std::vector<RigRow>& rows, const RigView& view,
     const std::string id = fluid.substr(fluid.find('/') + 1);
     std::vector<std::string> names;
     for (const std::string& input : inputs) names.push_back(input_text(input));
-    if (uncertain.contains(fluid) && names.empty()) continue;
+    if (!computed.contains(fluid) || (uncertain.contains(fluid) && names.empty())) continue;
     sheet.remark(uncertain.contains(fluid)
                      ? "Taken as exact, because no uncertainty is stated, of " + id + ": " +
                            joined(names, ", ") + "."
@@ -259,7 +259,42 @@ std::vector<RigRow> rig_rows(const v1::EvaluateRigRequest& request,
     }
     out.push_back(std::move(row));
   }
+  for (const v1::PointWarning& each : answer.range_warnings()) {
+    for (const int row : each.rows()) {
+      if (static_cast<std::size_t>(row) < out.size()) {
+        out[static_cast<std::size_t>(row)].warnings.push_back(shown_warning(each));
+      }
+    }
+  }
   return out;
+}
+
+std::vector<ShownWarning> rig_warnings(const std::vector<RigRow>& rows, const RigView& view) {
+  const auto* field = v1::RigCondition::descriptor()->FindFieldByName(view.x);
+  const auto x_of = [field](const RigRow& row) {
+    return row.condition.GetReflection()->GetDouble(row.condition, field);
+  };
+  std::vector<std::string> fluids;
+  std::vector<double> x;
+  for (const RigRow& row : rows) {
+    if (std::find(fluids.begin(), fluids.end(), row.fluid) == fluids.end()) {
+      fluids.push_back(row.fluid);
+    }
+    x.push_back(x_of(row));
+  }
+  std::sort(x.begin(), x.end());
+  x.erase(std::unique(x.begin(), x.end()), x.end());
+  std::vector<std::string> places, names;
+  for (const double each : x) places.push_back(significant(each, 3));
+  for (const std::string& each : fluids) names.push_back(resource_id(each));
+  const std::string unit = unit_of_field(view.x);
+  WarningCollector out(places, unit == "percent" ? "%" : unit, "all rows", names);
+  for (const RigRow& row : rows) {
+    const auto fluid = std::find(fluids.begin(), fluids.end(), row.fluid) - fluids.begin();
+    const auto place = std::lower_bound(x.begin(), x.end(), x_of(row)) - x.begin();
+    out.add(row.warnings, static_cast<std::size_t>(fluid), static_cast<std::size_t>(place));
+  }
+  return out.warnings();
 }
 
 std::optional<double> residual_percent(const RigRow& row, const RigView& view) {
@@ -271,10 +306,16 @@ std::string rig_text(const std::vector<RigRow>& rows, const RigView& view, Outpu
                      const RigDraws& draws) {
   if (format == OutputFormat::kJson) return json_of(rows, view, draws);
   if (format == OutputFormat::kTable) {
-    return table_of(rows, view) + residual_summary(rows, view) + draws_summary(rows, view, draws);
+    return table_of(rows, view) + residual_summary(rows, view) + draws_summary(rows, view, draws) +
+           warnings_text(rig_warnings(rows, view));
   }
   std::vector<CsvRow> lines;
-  for (const RigRow& row : rows) lines.push_back(csv_row(row, view, draws.draws));
+  for (const RigRow& row : rows) {
+    lines.push_back(csv_row(row, view, draws.draws));
+    for (auto& [header, cell] : lines.back()) {
+      if (cell == "NaN") cell.clear();
+    }
+  }
   return csv_text(lines);
 }
 

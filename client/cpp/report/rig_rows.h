@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/cpp/text/output.h"
+#include "client/cpp/text/warnings.h"
 #include "tribodyn/v1/rigs.pb.h"
 
 namespace tribodyn::client {
@@ -37,6 +38,7 @@ struct RigRow {
   std::string refusal;                    ///< why not; empty: none
   std::map<std::string, RigBand> bands;   ///< by column, of figures that the draws move
   int refused_draws = 0;
+  std::vector<ShownWarning> warnings = {};
   std::optional<double> measured;  ///< of the view's y, in the unit of its column
 };
 
@@ -50,6 +52,9 @@ struct RigDraws {
 /// Returns the columns of figures of an answer, in the order of its fields.
 const std::vector<std::string>& rig_columns();
 
+/// Returns the warnings of the rows with the fluids and places of the view's x that have them.
+std::vector<ShownWarning> rig_warnings(const std::vector<RigRow>& rows, const RigView& view);
+
 /// Returns the rows of an answer; `measured` is empty or holds a value for each condition.
 std::vector<RigRow> rig_rows(const v1::EvaluateRigRequest& request,
                              const v1::EvaluateRigResponse& answer,
@@ -59,8 +64,8 @@ std::vector<RigRow> rig_rows(const v1::EvaluateRigRequest& request,
 std::optional<double> residual_percent(const RigRow& row, const RigView& view);
 
 /// Returns the rows in one of the forms of --output. JSON is an object whose "rows" are objects
-/// with the headers of CSV. A table has the standard uncertainty of the view's y; below it stand
-/// what is behind that, and the RMS residual of each fluid if anything was measured.
+/// with the headers of CSV. A table has the 95 % interval of the view's y; below it stand what is
+/// behind that, the RMS residual of each fluid if anything was measured, and the warnings.
 std::string rig_text(const std::vector<RigRow>& rows, const RigView& view, OutputFormat format,
                      const RigDraws& draws = {});
 

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "client/cpp/text/csv.h"
+#include "client/cpp/text/output.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
@@ -13,8 +14,9 @@ namespace {
 constexpr const char* kConditionColumns[] = {"speed_kilometres_per_hour", "ascent_angle_degrees",
                                              "sump_temperature_celsius",
                                              "inlet_temperature_rise_kelvin"};
-constexpr const char* kStateColumns[] = {"contact_loss", "settled",        "period_in_mesh_cycles",
-                                         "model",        "refusal_reason", "refusal_message"};
+constexpr const char* kStateColumns[] = {"contact_loss",     "settled", "period_in_mesh_cycles",
+                                         "verdict_withheld", "model",   "refusal_reason",
+                                         "refusal_message"};
 constexpr const char* kOriginColumns[] = {"lubricant_revision", "surface_revision",
                                           "gear_set_revision", "vehicle_revision", "model_version"};
 
@@ -67,9 +69,10 @@ Cells figure_cells(const ScreenedPoint& point, bool has_contact_figures,
   out.push_back({kStateColumns[0], point.contact_loss ? "true" : "false", false});
   out.push_back({kStateColumns[1], point.settled ? "true" : "false", false});
   out.push_back({kStateColumns[2], std::to_string(point.period_in_mesh_cycles), false});
-  out.push_back({kStateColumns[3], v1::PointModel_Name(point.model)});
-  out.push_back({kStateColumns[4], refusal.reason()});
-  out.push_back({kStateColumns[5], printable(refusal.message())});
+  out.push_back({kStateColumns[3], point.verdict_withheld ? "true" : "false", false});
+  out.push_back({kStateColumns[4], v1::PointModel_Name(point.model)});
+  out.push_back({kStateColumns[5], refusal.reason()});
+  out.push_back({kStateColumns[6], printable(refusal.message())});
   return out;
 }
 
@@ -184,6 +187,7 @@ ScreenedPoint screened_point(const v1::EvaluatePointsResponse& answer, int row) 
   }
   out.contact_loss = answer.contact_loss(row);
   out.settled = answer.settled(row);
+  out.verdict_withheld = row < answer.verdict_withheld_size() && answer.verdict_withheld(row);
   out.period_in_mesh_cycles = answer.period_in_mesh_cycles(row);
   out.model = answer.model(row);
   out.refusal_number = answer.refusal_numbers(row);
@@ -192,8 +196,8 @@ ScreenedPoint screened_point(const v1::EvaluatePointsResponse& answer, int row) 
 
 std::vector<std::string> screened_columns(bool has_contact_figures) {
   std::vector<std::string> out(screened_figures().begin(), screened_figures().end());
-  out.insert(out.end(),
-             {"contact_loss", "settled", "period_in_mesh_cycles", "model", "refusal_number"});
+  out.insert(out.end(), {"contact_loss", "settled", "period_in_mesh_cycles", "model",
+                         "verdict_withheld", "refusal_number"});
   if (has_contact_figures) {
     out.insert(out.end(), contact_figures_of_points().begin(), contact_figures_of_points().end());
   }
@@ -213,6 +217,7 @@ ScreenedPoint screened_point(const std::vector<std::vector<double>>& columns, st
   out.settled = next() != 0;
   out.period_in_mesh_cycles = next();
   out.model = static_cast<v1::PointModel>(next());
+  out.verdict_withheld = next() != 0;
   out.refusal_number = next();
   for (std::size_t i = 0; column < columns.size(); ++i) out.contact[i] = columns[column++][row];
   return out;
@@ -247,16 +252,5 @@ void write_screening_csv(const Screening& screening, std::ostream& out) {
 void write_screening_json_lines(const Screening& screening, std::ostream& out) {
   write_points(screening, json_part, "{", ", ", "}", out);
 }
-
-std::string json_quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : printable(text)) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + "\"";
-}
-
-std::string json_number(double value) { return std::isfinite(value) ? shortest(value) : "null"; }
 
 }  // namespace tribodyn::client

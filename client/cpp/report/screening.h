@@ -2,11 +2,13 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <ostream>
 #include <string>
 #include <vector>
 
 #include "client/cpp/resources/candidate_table.h"
+#include "client/cpp/text/warnings.h"
 #include "tribodyn/v1/points.pb.h"
 
 namespace tribodyn::client {
@@ -33,6 +35,7 @@ struct ScreenedPoint {
   std::array<double, kContactFigures> contact = {};
   bool contact_loss = false;
   bool settled = false;
+  bool verdict_withheld = false;
   int period_in_mesh_cycles = 0;
   v1::PointModel model = v1::POINT_MODEL_UNSPECIFIED;
   /// 0: there are figures; n: Screening::refusals[n - 1] says why not; -1: not computed.
@@ -63,6 +66,8 @@ struct Screening {
   std::string program = "tribodyn";   ///< how the command line is called for its project
   std::vector<ScreenedPoint> points;  ///< by candidate, then by condition
   std::vector<v1::PointRefusal> refusals;
+  std::vector<ShownWarning> warnings;  ///< of candidates, with their names
+  std::map<std::size_t, std::vector<ShownWarning>> warnings_of;  ///< by candidate
 
   std::size_t conditions() const { return weights.size(); }
   bool has_contact_figures() const { return request.contact_figures(); }
@@ -78,10 +83,5 @@ v1::PointRefusal refusal_of(const Screening& screening, std::size_t candidate,
 /// Writes the table of all points as CSV with a header, or as JSON objects, one a line.
 void write_screening_csv(const Screening& screening, std::ostream& out);
 void write_screening_json_lines(const Screening& screening, std::ostream& out);
-
-/// Returns "\"text\"" as JSON.
-std::string json_quoted(const std::string& text);
-/// Returns the number as JSON; null if it is not finite.
-std::string json_number(double value);
 
 }  // namespace tribodyn::client

@@ -4,20 +4,18 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <set>
 
 #include "client/cpp/failure.h"
+#include "client/cpp/report/candidate_decisions.h"
 #include "client/cpp/text/nearest.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
-#include "core/decisions/factor_effects.h"
 #include "core/decisions/pareto_front.h"
 
 namespace tribodyn::client {
 namespace {
 
-constexpr double kEffectCoverage = 0.95;
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 double number_or_nan(const std::string& text) {
@@ -36,53 +34,6 @@ std::vector<double> numbers_of_column(const CandidateTable& table, std::size_t c
   std::vector<double> out;
   for (const auto& cells : table.cells) out.push_back(number_or_nan(cells[column]));
   return out;
-}
-
-/// The factors of the linear model, and the columns that they are.
-struct EffectFactors {
-  std::vector<std::size_t> columns;
-  std::vector<Factor> factors;
-};
-
-/// Returns a factor for each column but those of uncertainties: of numbers if all candidates have
-/// one.
-EffectFactors effect_factors(const CandidateTable& table,
-                             const std::vector<std::size_t>& candidates) {
-  EffectFactors out;
-  for (std::size_t k = 0; k < table.headers.size(); ++k) {
-    const bool is_uncertainty = std::any_of(table.uncertainties.begin(), table.uncertainties.end(),
-                                            [k](const auto& each) { return each.column == k; });
-    if (is_uncertainty) continue;
-    const std::vector<double> numbers = numbers_of_column(table, k);
-    const bool all_are_numbers = std::all_of(candidates.begin(), candidates.end(), [&](auto each) {
-      return std::isfinite(numbers[each]);
-    });
-    out.columns.push_back(k);
-    Factor& factor = out.factors.emplace_back();
-    for (const std::size_t each : candidates) {
-      if (all_are_numbers) {
-        factor.numbers.push_back(numbers[each]);
-      } else {
-        factor.words.push_back(table.cells[each][k]);
-      }
-    }
-  }
-  return out;
-}
-
-/// Returns a column without an effect, and why it has none.
-std::string left_out_text(const std::string& header, const Factor& factor, NoEffect reason) {
-  switch (reason) {
-    case NoEffect::kConstant:
-      return header + " (the same for all)";
-    case NoEffect::kTooManyWords:
-      return header + " (" +
-             std::to_string(std::set(factor.words.begin(), factor.words.end()).size()) +
-             " different texts)";
-    case NoEffect::kFollowsFromOthers:
-      break;
-  }
-  return header + " (follows from the columns before it)";
 }
 
 /// Returns what people call a parameter, "lubricant.relaxation_time_seconds" for one.
@@ -132,8 +83,7 @@ RankingConfidence ranking_confidence(const std::vector<CandidateFigures>& rankin
   for (const std::string& path : answer.shared_uncertain_parameters()) {
     out.shared.push_back(parameter_label(path));
   }
-  out.has_no_inputs = out.own.empty() && out.shared.empty();
-  if (out.has_no_inputs) return out;
+  out.draws = answer.draws();
   out.of.resize(std::min(ranking.size(), static_cast<std::size_t>(answer.compared())));
   for (const v1::RankedCandidate& each : answer.candidates()) {
     const std::size_t candidate = candidates.at(static_cast<std::size_t>(each.candidate()));
@@ -145,6 +95,11 @@ RankingConfidence ranking_confidence(const std::vector<CandidateFigures>& rankin
     const v1::CandidateComparison& comparison = each.comparison();
     out.of[position] = {comparison.standard_uncertainty(), comparison.worse_probability(),
                         comparison.tied()};
+  }
+  if (std::none_of(out.of.begin(), out.of.end(),
+                   [](const auto& each) { return each.has_value(); })) {
+    out.of.clear();
+    out.is_not_stated = answer.compared() > 0;
   }
   return out;
 }
@@ -189,38 +144,63 @@ ScreeningFront screening_front(const Screening& screening,
   return out;
 }
 
-std::optional<ScreeningEffects> screening_effects(const Screening& screening,
-                                                  const std::vector<CandidateFigures>& ranking) {
-  std::vector<std::size_t> candidates;
-  std::vector<double> responses;
-  for (const CandidateFigures& each : ranking) {
-    if (!each.refusal.empty()) continue;
-    candidates.push_back(each.candidate);
-    responses.push_back(each.inefficiency);
+void set_warnings(const std::vector<std::size_t>& candidates,
+                  const v1::RankCandidatesResponse& answer, Screening& screening) {
+  screening.warnings = ranking_warnings(answer);
+  for (const v1::CandidateWarning& each : answer.warnings()) {
+    for (const int candidate : each.candidates()) {
+      screening.warnings_of[candidates.at(static_cast<std::size_t>(candidate))].push_back(
+          shown_warning(each));
+    }
   }
-  if (candidates.empty()) return std::nullopt;
-  const EffectFactors factors = effect_factors(screening.table, candidates);
-  const auto found = factor_effects(factors.factors, responses, kEffectCoverage);
-  if (!found) return std::nullopt;
-  ScreeningEffects out;
-  out.degrees_of_freedom = found->degrees_of_freedom;
-  out.residual_standard_deviation = found->residual_standard_deviation;
-  out.explained_share = found->explained_share;
-  const auto header = [&](std::size_t factor) {
-    return screening.table.headers[factors.columns[factor]];
+  for (const v1::PointWarning& each : screening.base.warnings()) {
+    const bool is_known =
+        std::any_of(screening.warnings.begin(), screening.warnings.end(),
+                    [&each](const ShownWarning& other) { return other.code == each.code(); });
+    if (is_known) continue;
+    screening.warnings.push_back(shown_warning(each));
+    screening.warnings.back().where = "the base";
+  }
+}
+
+ScreeningEffects screening_effects(const Screening& screening,
+                                   const std::vector<std::size_t>& candidates,
+                                   const v1::EstimateCandidateEffectsResponse& answer) {
+  const CandidateTable& table = screening.table;
+  const auto parameter = [&table](const std::string& path) {
+    return std::find_if(table.parameters.begin(), table.parameters.end(),
+                        [&path](const auto& each) { return each.path() == path; });
   };
-  for (const FactorEffect& each : found->effects) {
-    const auto typed = [&](std::size_t position) {
-      const std::string& cell =
-          screening.table.cells[candidates[position]][factors.columns[each.factor]];
-      if (!cell.empty()) return cell;
-      return std::string(factors.factors[each.factor].words.empty() ? "base" : "(empty)");
-    };
-    out.effects.push_back(
-        {header(each.factor), typed(each.from), typed(each.to), each.effect, each.low, each.high});
+  const auto header = [&](const std::string& path) {
+    const auto found = parameter(path);
+    return found != table.parameters.end() && found->column ? table.headers[*found->column] : path;
+  };
+  const auto typed = [&](const std::string& path, int number) {
+    const auto found = parameter(path);
+    const std::size_t candidate = candidates.at(static_cast<std::size_t>(number));
+    if (found == table.parameters.end()) return table.names[candidate];
+    const std::string cell = found->column ? table.cells[candidate][*found->column] : "";
+    return cell.empty() ? significant(found->values[candidate]) : cell;
+  };
+  ScreeningEffects out;
+  out.degrees_of_freedom = answer.degrees_of_freedom();
+  out.residual_standard_deviation = answer.residual_standard_deviation_value();
+  out.explained_share = answer.explained_share();
+  for (const v1::CandidateEffect& each : answer.effects()) {
+    ScreeningEffect& effect =
+        out.effects.emplace_back(ScreeningEffect{header(each.column()),
+                                                 typed(each.column(), each.from_candidate()),
+                                                 typed(each.column(), each.to_candidate()),
+                                                 each.effect(),
+                                                 each.effect_minimum(),
+                                                 each.effect_maximum(),
+                                                 {}});
+    for (const std::string& other : each.collinear_columns()) {
+      effect.collinear.push_back(header(other));
+    }
   }
-  for (const auto& [factor, reason] : found->left_out) {
-    out.left_out.push_back(left_out_text(header(factor), factors.factors[factor], reason));
+  for (const v1::ColumnWithoutEffect& each : answer.left_out()) {
+    out.left_out.push_back(header(each.column()) + " (" + reason_text(each.reason()) + ")");
   }
   return out;
 }
@@ -234,14 +214,16 @@ std::string front_report(const Screening& screening, const std::vector<Candidate
   Table table({{"candidate", "", Align::kLeft},
                {"inefficiency", "%", Align::kDecimal},
                {front.column, "", Align::kDecimal},
-               {"rank", "", Align::kRight}});
+               {"rank", "", Align::kRight},
+               {"", "", Align::kLeft}});
   for (const std::size_t candidate : front.front) {
     const auto at = std::find_if(ranking.begin(), ranking.end(), [candidate](const auto& each) {
       return each.candidate == candidate;
     });
     table.add_row(
         {screening.table.names[candidate], fixed(at->inefficiency, effect_places(at->solver_error)),
-         significant(front.values[candidate], 6), std::to_string(at - ranking.begin() + 1)});
+         significant(front.values[candidate], 6), std::to_string(at - ranking.begin() + 1),
+         at->is_withheld ? "verdict withheld" : ""});
   }
   Sheet note;
   note.remark("No other candidate has both a lower inefficiency and " +
@@ -261,12 +243,17 @@ std::string effects_report(const ScreeningEffects& effects) {
                {"", "", Align::kLeft}});
   for (const ScreeningEffect& each : effects.effects) {
     const int places = effect_places(0.5 * (each.high - each.low));
+    const bool is_clear = each.low > 0 || each.high < 0;
     table.add_row({each.column, each.from, each.to, plus_text(each.effect, places),
                    plus_text(each.low, places) + " to " + plus_text(each.high, places),
-                   each.low > 0 || each.high < 0 ? "" : "cannot be told from zero"});
+                   std::string(is_clear ? "" : "cannot be told from zero") +
+                       (is_clear || each.collinear.empty() ? "" : "; ") +
+                       (each.collinear.empty()
+                            ? ""
+                            : "cannot be separated from " + joined(each.collinear, ", "))});
   }
   Sheet note;
-  note.remark("A linear model of all columns without interactions explains " +
+  note.remark("A linear model of the parameters without interactions explains " +
               fixed(100 * effects.explained_share, 1) +
               " % of the variance; the rest scatters by " +
               significant(effects.residual_standard_deviation, 2) + " % (standard deviation, " +
@@ -299,7 +286,8 @@ std::string effects_json(const ScreeningEffects& effects) {
            ", \"from\": " + json_quoted(each.from) + ", \"to\": " + json_quoted(each.to) +
            ", \"effect_percent\": " + json_number(each.effect) +
            ", \"low_percent\": " + json_number(each.low) +
-           ", \"high_percent\": " + json_number(each.high) + "}";
+           ", \"high_percent\": " + json_number(each.high) +
+           ", \"collinear_columns\": " + json_quoted(joined(each.collinear, ", ")) + "}";
   }
   return "{\"explained_share\": " + json_number(effects.explained_share) +
          ", \"residual_standard_deviation_percent\": " +

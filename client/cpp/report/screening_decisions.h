@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,10 +31,16 @@ ScreeningFront screening_front(const Screening& screening,
                                const std::vector<CandidateFigures>& ranking,
                                const std::string& column, bool wants_most);
 
-/// Effect of one column, or of one level of a column of words, on the mean inefficiency.
+/// Sets the warnings of a screening. The numbers of `answer`, a ranking by the service, are
+/// positions in `candidates`, the indices of the candidates in the table.
+void set_warnings(const std::vector<std::size_t>& candidates,
+                  const v1::RankCandidatesResponse& answer, Screening& screening);
+
+/// Effect of one parameter on the mean inefficiency.
 struct ScreeningEffect {
-  std::string column, from, to;  ///< as typed: lowest and highest number, or two words
+  std::string column, from, to;  ///< as typed: lowest and highest value
   double effect, low, high;      ///< change of the mean inefficiency and its 95 % interval [%]
+  std::vector<std::string> collinear;  ///< columns from which it cannot be separated
 };
 
 struct ScreeningEffects {
@@ -46,9 +51,11 @@ struct ScreeningEffects {
   double explained_share = 0;              ///< of its variance, 0 to 1
 };
 
-/// Returns the main effects of all columns that differ; nullopt if there are too few candidates.
-std::optional<ScreeningEffects> screening_effects(const Screening& screening,
-                                                  const std::vector<CandidateFigures>& ranking);
+/// Returns the main effects of parameters as the service states them; its numbers are positions in
+/// `candidates`.
+ScreeningEffects screening_effects(const Screening& screening,
+                                   const std::vector<std::size_t>& candidates,
+                                   const v1::EstimateCandidateEffectsResponse& answer);
 
 std::string front_report(const Screening& screening, const std::vector<CandidateFigures>& ranking,
                          const ScreeningFront& front);

@@ -39,6 +39,7 @@ Panel front_panel(const Screening& screening, const std::vector<CandidateFigures
     if (!each.refusal.empty() || !std::isfinite(value)) continue;
     others.x.push_back(value);
     others.y.push_back(each.inefficiency);
+    others.hollow.push_back(each.is_withheld);
   }
   const Look look = look_of(0);
   best.label = "Pareto front";
@@ -116,7 +117,10 @@ std::vector<std::string> screening_footer(const Screening& screening,
                 resource_id(screening.base.lubricant_revision()) + " at " +
                 std::to_string(screening.conditions()) +
                 (screening.conditions() == 1 ? " condition." : " conditions, weighted mean.") +
-                (front != nullptr ? " Dotted: the base." : ""));
+                (front != nullptr ? " Dotted: the base." : "") +
+                (front != nullptr && !withheld_by(screening.warnings).empty()
+                     ? " Hollow: a warning withholds the verdict."
+                     : ""));
   if (effects != nullptr) {
     out.push_back("A linear model without interactions explains " +
                   fixed(100 * effects->explained_share, 1) +
@@ -125,6 +129,8 @@ std::vector<std::string> screening_footer(const Screening& screening,
                        ? " The " + std::to_string(kDrawnEffects) + " largest effects."
                        : ""));
   }
+  if (!screening.base.not_included().empty()) out.push_back(screening.base.not_included());
+  for (std::string& each : warning_footers(screening.warnings)) out.push_back(std::move(each));
   out.push_back("Model version " + screening.base.model_version() + "; hash of inputs " +
                 screening.input_hash.substr(0, 12) + ".");
   return out;

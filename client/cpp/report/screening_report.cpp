@@ -6,9 +6,11 @@
 #include <limits>
 #include <map>
 
+#include "client/cpp/report/candidate_decisions.h"
 #include "client/cpp/text/csv.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/warnings.h"
 
 namespace tribodyn::client {
 namespace {
@@ -55,6 +57,7 @@ CandidateFigures weighted_figures(const Screening& screening, const PointOf& poi
     out.solver_error += weight * std::abs(energy_mean) * (std::isfinite(error) ? error : 0);
     out.loss_power += weight * point.figures[ScreenedPoint::kLossPower];
     out.contact_loss = out.contact_loss || point.contact_loss;
+    out.is_withheld = out.is_withheld || point.verdict_withheld;
     for (std::size_t i = 0; i < point.contact.size(); ++i) {
       double& figure = out.contact[i];
       switch (i) {
@@ -101,10 +104,13 @@ std::string conditions_text(const Screening& screening) {
   return distinct(speeds, "km/h") + "; sump " + distinct(sumps, "C");
 }
 
-/// Returns the headers of the columns that differ between candidates, those of parameters first.
+/// Returns the headers of the columns that differ between candidates, those of parameters first. Of
+/// candidates that differ in many parameters, as whole lubricants do, no parameter.
 std::vector<std::size_t> shown_columns(const CandidateTable& table) {
+  const bool has_many = table.parameters.size() > 2 * kShownColumns;
   std::vector<std::size_t> out;
   for (const bool carried : {false, true}) {
+    if (!carried && has_many) continue;
     for (std::size_t i = 0; i < table.headers.size(); ++i) {
       if (table.is_carried[i] != carried) continue;
       const bool differs =
@@ -116,8 +122,11 @@ std::vector<std::size_t> shown_columns(const CandidateTable& table) {
   return out;
 }
 
-std::string shortened(const std::string& header) {
+std::string shortened(std::string header) {
   constexpr std::size_t kWidth = 18;
+  for (const char* kind : {"lubricant.", "surface."}) {
+    if (header.size() > kWidth && header.starts_with(kind)) header.erase(0, header.find('.') + 1);
+  }
   return header.size() <= kWidth ? header : header.substr(0, kWidth - 3) + "...";
 }
 
@@ -158,12 +167,31 @@ const CandidateConfidence* confidence_at(const RankingConfidence& confidence,
   return is_known ? &*confidence.of[position] : nullptr;
 }
 
-std::string verdict_of(const CandidateConfidence* confidence, std::size_t position) {
-  if (confidence == nullptr) return "-";
-  if (position == 0) return "best";
+const std::vector<ShownWarning>& warnings_of(const Screening& screening, std::size_t candidate) {
+  static const std::vector<ShownWarning> none;
+  const auto found = screening.warnings_of.find(candidate);
+  return found == screening.warnings_of.end() ? none : found->second;
+}
+
+/// Returns the words on a candidate; an absent position is that of the base.
+std::string verdict_of(const Screening& screening, const CandidateFigures& figures,
+                       const RankingConfidence& confidence, std::optional<std::size_t> position) {
+  if (figures.is_withheld) {
+    return withheld_text(!position ? withheld_by(screening.base.warnings())
+                                   : withheld_by(warnings_of(screening, figures.candidate)));
+  }
+  if (!position) return "";
+  const CandidateConfidence* sure = confidence_at(confidence, *position);
+  if (sure == nullptr) return *position < confidence.of.size() ? "uncertainty not stated" : "-";
+  if (*position == 0) return "the best";
+  return sure->is_tied ? "cannot be told apart" : "loses more";
+}
+
+/// Returns the probability that a candidate loses more than the best one.
+std::string more_text(const CandidateConfidence* confidence, std::optional<std::size_t> position) {
+  if (confidence == nullptr || position == 0U) return "";
   const double percent = 100 * confidence->higher_probability;
-  const std::string probability = percent > 99.5 ? "> 99 %" : fixed(percent, 0) + " %";
-  return (confidence->is_tied ? "tie, " : "worse, ") + probability;
+  return percent > 99.5 ? "> 99 %" : fixed(percent, 0) + " %";
 }
 
 /// Returns the contact figures that the ranking shows on a terminal.
@@ -183,12 +211,16 @@ std::string ranking_table(const Screening& screening, const std::vector<Candidat
   std::vector<Table::Column> columns = {{"rank", "", Align::kRight},
                                         {"candidate", "", Align::kLeft},
                                         {"inefficiency", "%", Align::kDecimal},
-                                        {"+/- solver", "%", Align::kDecimal},
+                                        {"solver error", "%", Align::kDecimal},
                                         {"vs base", "%", Align::kDecimal},
                                         {"mesh loss", "W", Align::kDecimal}};
   const bool is_sure = !confidence.of.empty();
-  if (is_sure) columns.insert(columns.begin() + 3, {"+/- inputs", "%", Align::kDecimal});
-  if (is_sure) columns.push_back({"to the best", "", Align::kLeft});
+  if (is_sure) columns.insert(columns.begin() + 3, {"std. uncertainty", "%", Align::kDecimal});
+  const bool has_verdicts = is_sure || base.is_withheld ||
+                            std::any_of(ranking.begin(), ranking.end(),
+                                        [](const auto& each) { return each.is_withheld; });
+  if (is_sure) columns.push_back({"P(loses more)", "", Align::kRight});
+  if (has_verdicts) columns.push_back({"against the best", "", Align::kLeft});
   const bool has_contact = screening.has_contact_figures();
   if (has_contact) {
     columns.insert(columns.end(), {{"boundary loss", "W", Align::kDecimal},
@@ -219,7 +251,8 @@ std::string ranking_table(const Screening& screening, const std::vector<Candidat
     out.push_back(cells == nullptr ? "" : signed_text(relative_difference(each, base), 2));
     out.push_back(fixed(each.loss_power,
                         places_for(each.loss_power * each.solver_error / each.inefficiency)));
-    if (is_sure) out.push_back(position ? verdict_of(sure, *position) : "");
+    if (is_sure) out.push_back(more_text(sure, position));
+    if (has_verdicts) out.push_back(verdict_of(screening, each, confidence, position));
     if (has_contact) {
       for (const std::string& cell : contact_cells(each)) out.push_back(cell);
     }
@@ -242,33 +275,54 @@ std::string ranking_table(const Screening& screening, const std::vector<Candidat
 void add_confidence(const Screening& screening, const std::vector<CandidateFigures>& ranking,
                     const RankingConfidence& confidence, Sheet& sheet) {
   const auto& of = confidence.of;
-  if (confidence.has_no_inputs) {
+  if (confidence.is_not_stated) {
     sheet.heading("How sure the ranking is");
     sheet.remark(
-        "Nobody states an uncertainty of an input, so that no ties can be found. State those of "
-        "what "
-        "differs with --uncertainty PARAMETER=VALUE or in columns PARAMETER.standard_uncertainty.");
+        (confidence.own.empty()
+             ? "Nobody states an uncertainty of what the candidates differ in"
+             : "No uncertainty of " + screening.table.names[ranking.front().candidate] +
+                   ", which has the least mean, is stated") +
+        ", so that no ties can be found. State it with --uncertainty PARAMETER=VALUE or in columns "
+        "PARAMETER.standard_uncertainty.");
+  }
+  if (ranking.front().is_withheld) {
+    sheet.heading("How sure the ranking is");
+    sheet.remark("Every verdict is withheld.");
   }
   if (of.empty() || !of.front()) return;
-  std::vector<std::string> tied;
-  std::size_t ties = 0;
+  std::vector<std::string> tied, not_stated;
+  std::size_t ties = 0, others = 0;
   for (std::size_t i = 1; i < of.size(); ++i) {
-    if (!of[i] || !of[i]->is_tied) continue;
+    if (!of[i]) {
+      if (!ranking[i].is_withheld) {
+        not_stated.push_back(screening.table.names[ranking[i].candidate]);
+      }
+      continue;
+    }
+    ++others;
+    if (!of[i]->is_tied) continue;
     if (ties++ < 2 * kListedNames) tied.push_back(screening.table.names[ranking[i].candidate]);
   }
   const std::string& best = screening.table.names[ranking.front().candidate];
   const std::string percent = significant(100 * confidence.confidence, 4) + " %";
   sheet.heading("How sure the ranking is");
   sheet.remark(
-      ties == 0
+      others == 0 ? best + " has the least mean."
+      : ties == 0
           ? "At " + percent + " " + best +
-                (of.size() < ranking.size() ? " loses less than every other one that was compared."
-                                            : " loses less than every other candidate.")
-          : std::to_string(ties) + " of " + std::to_string(of.size() - 1) +
-                " others cannot be told apart from " + best + " at " + percent + ": " +
-                joined(tied, ", ") +
+                (others + 1 < ranking.size() ? " loses less than every other one that was compared."
+                                             : " loses less than every other candidate.")
+          : std::to_string(ties) + " of " + std::to_string(others) +
+                (others == 1 ? " other" : " others") + " cannot be told apart from " + best +
+                " at " + percent + ": " + joined(tied, ", ") +
                 (ties > tied.size() ? " and " + std::to_string(ties - tied.size()) + " more."
                                     : "."));
+  if (!not_stated.empty()) {
+    const std::size_t more = not_stated.size() - std::min(not_stated.size(), kListedNames);
+    not_stated.resize(not_stated.size() - more);
+    sheet.remark("Uncertainty not stated, and so no verdict: " + joined(not_stated, ", ") +
+                 (more == 0 ? "." : " and " + std::to_string(more) + " more."));
+  }
   if (of.size() < ranking.size()) {
     sheet.remark("Compared: the best " + std::to_string(of.size()) + " candidates.");
   }
@@ -281,8 +335,9 @@ void add_confidence(const Screening& screening, const std::vector<CandidateFigur
            ? std::string()
            : " Errors that all candidates have in common and that nearly cancel: " +
                  joined(confidence.shared, ", ") + ".") +
-      " Probabilities are by the linear model and normal errors; the solver's error "
-      "counts against each difference.");
+      " P(loses more): the probability that a candidate loses more than the best one, from " +
+      std::to_string(confidence.draws) +
+      " draws of the inputs; the solver's error counts against each difference.");
 }
 
 std::string ranking_text(const Screening& screening, const std::vector<CandidateFigures>& ranking,
@@ -292,12 +347,13 @@ std::string ranking_text(const Screening& screening, const std::vector<Candidate
   Sheet title;
   title.heading("Mesh inefficiency, energy mean over " + std::to_string(screening.conditions()) +
                 (screening.conditions() == 1 ? " condition: " : " conditions: ") +
-                std::to_string(std::min(top, with_figures)) + " best of " +
-                std::to_string(screening.table.size()) + " candidates");
+                best_of_text(std::min(top, with_figures), screening.table.size(), " best"));
   Sheet sheet;
   add_confidence(screening, ranking, confidence, sheet);
   add_refusals(screening, ranking, sheet);
+  add_warnings(screening.warnings, sheet);
   sheet.heading("What was computed");
+  if (!screening.base.not_included().empty()) sheet.remark(screening.base.not_included());
   std::vector<std::string> varied, carried;
   for (const CandidateParameter& each : screening.table.parameters) varied.push_back(each.path());
   for (std::size_t i = 0; i < screening.table.headers.size(); ++i) {
@@ -334,7 +390,7 @@ std::string ranking_csv(const Screening& screening, const std::vector<CandidateF
     header.insert(header.end(), contact_figures_of_points().begin(),
                   contact_figures_of_points().end());
   }
-  header.emplace_back("refusal");
+  header.insert(header.end(), {"verdict_withheld", "warnings", "refusal"});
   std::string out = csv_line(header);
   for (std::size_t i = 0; i < ranking.size(); ++i) {
     const CandidateFigures& each = ranking[i];
@@ -355,7 +411,8 @@ std::string ranking_csv(const Screening& screening, const std::vector<CandidateF
     if (screening.has_contact_figures()) {
       std::transform(each.contact.begin(), each.contact.end(), std::back_inserter(cells), number);
     }
-    cells.push_back(each.refusal);
+    cells.insert(cells.end(), {has_figures ? (each.is_withheld ? "true" : "false") : "",
+                               codes_of(warnings_of(screening, each.candidate)), each.refusal});
     out += csv_line(cells);
   }
   return out;
@@ -369,7 +426,8 @@ std::string ranking_json(const Screening& screening, const std::vector<Candidate
     std::string text = "\"inefficiency_energy_mean_percent\": " + json_number(each.inefficiency) +
                        ", \"solver_error_percent\": " + json_number(each.solver_error) +
                        ", \"mesh_loss_power_watts\": " + json_number(each.loss_power) +
-                       ", \"contact_loss\": " + (each.contact_loss ? "true" : "false");
+                       ", \"contact_loss\": " + (each.contact_loss ? "true" : "false") +
+                       ", \"verdict_withheld\": " + (each.is_withheld ? "true" : "false");
     for (std::size_t i = 0; screening.has_contact_figures() && i < each.contact.size(); ++i) {
       text +=
           ", " + json_quoted(contact_figures_of_points()[i]) + ": " + json_number(each.contact[i]);
@@ -394,7 +452,8 @@ std::string ranking_json(const Screening& screening, const std::vector<Candidate
       out += (k == 0 ? "" : ", ") + json_quoted(screening.table.headers[k]) + ": " +
              json_quoted(screening.table.cells[each.candidate][k]);
     }
-    out += "}, ";
+    out +=
+        "}, \"warnings\": " + json_quoted(codes_of(warnings_of(screening, each.candidate))) + ", ";
     if (const CandidateConfidence* sure = confidence_at(confidence, i)) {
       out += "\"standard_uncertainty_percent\": " + json_number(sure->standard_uncertainty) +
              ", \"higher_probability\": " + json_number(sure->higher_probability) +
@@ -405,7 +464,8 @@ std::string ranking_json(const Screening& screening, const std::vector<Candidate
                                       json_number(relative_difference(each, base)) + "}"
                                 : refusal(each) + "}";
   }
-  out += "\n  ]";
+  out += "\n  ],\n  \"warnings\": " + warnings_json(screening.warnings) +
+         ",\n  \"not_included\": " + json_quoted(screening.base.not_included());
   for (const auto& [name, value] : members) out += ",\n  " + json_quoted(name) + ": " + value;
   return out + "\n}\n";
 }
@@ -443,6 +503,7 @@ std::vector<CandidateFigures> ranked(const Screening& screening) {
   std::stable_sort(out.begin(), out.end(),
                    [](const CandidateFigures& a, const CandidateFigures& b) {
                      if (a.refusal.empty() != b.refusal.empty()) return a.refusal.empty();
+                     if (a.is_withheld != b.is_withheld) return b.is_withheld;
                      return a.refusal.empty() && a.inefficiency < b.inefficiency;
                    });
   return out;

@@ -22,15 +22,16 @@ struct CandidateFigures {
   /// By ScreenedPoint::ContactFigure: extremes over the conditions of the figures that are
   /// extremes, and weighted means of the others.
   std::array<double, ScreenedPoint::kContactFigures> contact = {};
-  std::string refusal;  ///< why there are no figures; empty if there are
+  std::string refusal;       ///< why there are no figures; empty if there are
+  bool is_withheld = false;  ///< a warning at one condition or more withholds the verdict
 };
 
 /// Returns the figures of a candidate.
 CandidateFigures candidate_figures(const Screening& screening, std::size_t candidate);
 CandidateFigures base_figures(const Screening& screening);
 
-/// Returns the figures of all candidates by ascending inefficiency, those without figures last in
-/// the order of the table.
+/// Returns the figures of all candidates by ascending inefficiency, then those whose verdict is
+/// withheld, and last those without figures in the order of the table.
 std::vector<CandidateFigures> ranked(const Screening& screening);
 
 /// What the errors of the inputs make of a candidate.
@@ -42,8 +43,9 @@ struct CandidateConfidence {
 
 /// How sure a ranking is.
 struct RankingConfidence {
-  bool has_no_inputs = false;  ///< nobody states an uncertainty of an input
-  double confidence = 0.95;    ///< probability from which on candidates can be told apart
+  bool is_not_stated = false;  ///< nobody states an uncertainty of what the candidates differ in
+  int draws = 0;               ///< of the inputs
+  double confidence = 0.95;    ///< of the interval of a difference; ties: it holds 0
   /// By position in the ranking, of its first candidates alone; nullopt: not known.
   std::vector<std::optional<CandidateConfidence>> of;
   std::vector<std::string> own;     ///< inputs with errors that are independent between candidates

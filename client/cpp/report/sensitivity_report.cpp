@@ -8,6 +8,7 @@
 
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/warnings.h"
 
 namespace tribodyn::client {
 namespace {
@@ -224,6 +225,7 @@ std::string sensitivity_csv(const v1::PointResult& result) {
       row.emplace_back("derivative." + sensitivities.figures(f), shortest(each.derivatives(f)));
       row.emplace_back("elasticity." + sensitivities.figures(f), shortest(elasticity_of(each, f)));
     }
+    row.emplace_back("warnings", codes_of(result.warnings()));
     rows.push_back(std::move(row));
   }
   return rows.empty() ? "" : csv_text(rows);

@@ -11,6 +11,7 @@
 #include "client/cpp/text/inputs.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/warnings.h"
 
 namespace tribodyn::client {
 namespace {
@@ -58,7 +59,7 @@ std::string table_of(const v1::ReadSpectrumResponse& spectrum) {
   return sheet.text() + "\n" + table.text() + "\n" + wrapped(normalisation(spectrum), 0) + "\n";
 }
 
-std::string csv_of(const v1::ReadSpectrumResponse& spectrum) {
+std::string csv_of(const v1::ReadSpectrumResponse& spectrum, const std::string& warnings) {
   std::vector<CsvRow> rows;
   for (int k = 0; k < spectrum.orders_size(); ++k) {
     CsvRow row{{"order", shortest(spectrum.orders(k))}};
@@ -67,6 +68,7 @@ std::string csv_of(const v1::ReadSpectrumResponse& spectrum) {
       row.emplace_back("phase_angle_radians_" + column.name(),
                        shortest(column.phase_angles_radians(k)));
     }
+    row.emplace_back("warnings", warnings);
     rows.push_back(std::move(row));
   }
   return csv_text(rows);
@@ -76,11 +78,18 @@ std::string csv_of(const v1::ReadSpectrumResponse& spectrum) {
 
 std::string spectrum_text(const v1::Simulation& simulation,
                           const v1::ReadSpectrumResponse& spectrum, OutputFormat format) {
-  if (format == OutputFormat::kJson) return json_text(spectrum);
-  if (format == OutputFormat::kCsv) return csv_of(spectrum);
+  const std::vector<CurveWarning> found = curve_warnings({simulation});
+  const std::vector<ShownWarning> warnings(found.begin(), found.end());
+  if (format == OutputFormat::kJson) {
+    return json_with(json_text(spectrum), "warnings", warnings_json(warnings));
+  }
+  if (format == OutputFormat::kCsv) return csv_of(spectrum, codes_of(warnings));
+  Sheet notes;
+  add_input_warnings(spectrum.input_warnings(), notes);
+  add_warnings(warnings, notes);
   return printable(simulation.name()) + ": " + study_text(simulation) + ", " +
          printable(simulation.lubricant()) + ", " + inputs_text(simulation) + "\n\n" +
-         table_of(spectrum);
+         table_of(spectrum) + notes.text();
 }
 
 std::string spectrum_plot(const v1::Simulation& simulation,

@@ -87,6 +87,7 @@ class ColumnFinder {
     const std::string rest =
         is_of_lubricant || is_of_surface ? header.substr(header.find('.') + 1) : header;
     std::string meant;
+    bool is_known = false;  // as another field
     for (const Descriptor* type : {v1::Lubricant::descriptor(), v1::Surface::descriptor()}) {
       if (type == v1::Lubricant::descriptor() ? is_of_surface : is_of_lubricant) continue;
       const ResourceKind& kind = kind_of(*type);
@@ -95,9 +96,23 @@ class ColumnFinder {
         if (is_parameter(*column) || is_measurement(*column) || is_uncertainty(*column)) {
           return column;
         }
-        if (column->kind == Kind::kProvenance && !column->field) continue;
+        if (column->kind == Kind::kNumber) {
+          wrong = "is no parameter of candidates, but a field of a " + kind.singular + "; create " +
+                  kind.plural + " with it (tribodyn " + kind.word + " import FILE)";
+          if (type == v1::Lubricant::descriptor()) wrong += " and screen them with --lubricants";
+          if (carried_by_ == CarriedBy::kFlag) {
+            wrong += "; --carry '" + printable(header) + "' carries it along without effect";
+          }
+          return std::nullopt;
+        }
+        is_known = is_known || column->kind != Kind::kProvenance || column->field != nullptr;
+        continue;
+      }
+      if (complaint.starts_with(kNotAColumn)) {
+        wrong = complaint + ", and screen the lubricants with --lubricants";
         return std::nullopt;
       }
+      if (is_known) continue;
       const std::string near = nearest_column(kind, rest);
       if (!near.empty() && complaint.starts_with("has the unit")) {
         wrong = complaint;
@@ -105,6 +120,7 @@ class ColumnFinder {
       }
       if (meant.empty()) meant = near;
     }
+    if (is_known) return std::nullopt;
     if (!meant.empty()) {
       wrong = "is no parameter (is " + meant + " meant?)";
       wrong += carried_by_ == CarriedBy::kFlag
@@ -134,11 +150,18 @@ double number_of(const Message& resource, const FieldDescriptor& field) {
 
 /// Returns the field of the lubricant, of its pressure-viscosity law or of the surface; NaN if it
 /// is not set.
+/// An oil without boundary friction has that of the surface, in a field of the same name; NaN if it
+/// has a table by temperature in place of the field.
 double number_in(const v1::Lubricant& lubricant, const v1::Surface& surface,
                  const FieldDescriptor& field) {
   if (field.containing_type() == v1::Surface::descriptor()) return number_of(surface, field);
-  return is_of_law(field) ? number_of(lubricant.improved_yasutomi(), field)
-                          : number_of(lubricant, field);
+  if (is_of_law(field)) return number_of(lubricant.improved_yasutomi(), field);
+  const double stated = number_of(lubricant, field);
+  const bool has_table = field.number() == v1::Lubricant::kAsperityFrictionCoefficientFieldNumber &&
+                         !lubricant.asperity_friction_by_temperature().empty();
+  const FieldDescriptor* of_surface = v1::Surface::descriptor()->FindFieldByName(field.name());
+  const bool is_of_surface = std::isnan(stated) && !has_table && of_surface != nullptr;
+  return is_of_surface ? number_of(surface, *of_surface) : stated;
 }
 
 /// Returns the path of a field of a lubricant within it.
@@ -356,6 +379,7 @@ std::vector<v1::Lubricant> characterised(Connection& connection,
   for (const FieldDescriptor* field : fields) {
     options.read_mask.push_back(path_in_lubricant(*field));
   }
+  options.read_mask.emplace_back("provenance");
   // Names that no lubricant has: nothing is written under them.
   const std::string prefix = "lubricants/candidate-of-a-screening-";
   for (std::size_t first = 0; first < table.size(); first += kCharacterisedAtOnce) {
@@ -382,6 +406,32 @@ std::vector<v1::Lubricant> characterised(Connection& connection,
   return out;
 }
 
+/// Throws Failure if the server estimated parameters whose uncertainty the table does not state: a
+/// table has no column for the correlation of their errors, without which they would count as
+/// exact.
+void check_estimates(const std::vector<v1::Lubricant>& lubricants, const CandidateTable& table) {
+  std::set<std::string> estimated;
+  for (std::size_t i = 0; i < lubricants.size(); ++i) {
+    for (const v1::ParameterProvenance& entry : lubricants[i].provenance()) {
+      const bool is_uncertain_estimate = entry.computed() &&
+                                         entry.provenance() == v1::PROVENANCE_ASSUMED &&
+                                         entry.standard_uncertainty() > 0;
+      const bool is_stated = std::any_of(
+          table.uncertainties.begin(), table.uncertainties.end(), [&](const auto& each) {
+            return each.field->name() == entry.field() && each.values[i] > 0;
+          });
+      if (is_uncertain_estimate && !is_stated) estimated.insert(label_of_field(entry.field()));
+    }
+  }
+  if (estimated.empty()) return;
+  throw Failure(kExitUsage,
+                "a table cannot carry the uncertainty of what the server estimates: " +
+                    joined(std::vector<std::string>(estimated.begin(), estimated.end()), ", ") +
+                    ". Import it (tribodyn lubricants import FILE, then tribodyn screen "
+                    "--lubricants ...), or "
+                    "state these parameters in columns or in the base.\n  Nothing was evaluated.");
+}
+
 std::vector<const FieldDescriptor*> numbers_of_lubricants() {
   std::vector<const FieldDescriptor*> out;
   for (const RowColumn& column : columns_of(kind_of(*v1::Lubricant::descriptor()))) {
@@ -391,6 +441,13 @@ std::vector<const FieldDescriptor*> numbers_of_lubricants() {
 }
 
 }  // namespace
+
+std::string CandidateParameter::header() const {
+  const bool is_of_surface = field->containing_type() == v1::Surface::descriptor();
+  const bool is_ambiguous =
+      is_of_surface && v1::Lubricant::descriptor()->FindFieldByName(field->name()) != nullptr;
+  return (is_ambiguous ? "surface." : "") + field->name();
+}
 
 std::string CandidateParameter::path() const {
   return field->containing_type() == v1::Surface::descriptor()
@@ -408,7 +465,7 @@ std::vector<const FieldDescriptor*> candidate_parameters() {
 
 const FieldDescriptor* find_candidate_parameter(const std::string& word, std::string& wrong) {
   std::vector<std::string> words;
-  for (const auto* type : {v1::Surface::descriptor(), v1::Lubricant::descriptor()}) {
+  for (const auto* type : {v1::Lubricant::descriptor(), v1::Surface::descriptor()}) {
     const ResourceKind& kind = kind_of(*type);
     const std::string owner = kind.singular + ".";
     const std::string own = word.starts_with(owner) ? word.substr(owner.size()) : word;
@@ -449,6 +506,7 @@ void characterise_candidates(Connection& connection, const CandidateBase& base,
   if (table.lubricants.empty()) return;
   const std::vector<const FieldDescriptor*> fields = numbers_of_lubricants();
   const std::vector<v1::Lubricant> lubricants = characterised(connection, fields, table);
+  check_estimates(lubricants, table);
   for (const FieldDescriptor* field : fields) {
     // The law of the base determines alpha*, so that a column of it has no effect.
     const bool is_determined =

@@ -18,6 +18,8 @@ struct CandidateParameter {
   std::optional<std::size_t> column = {};
   std::string bare_unit = {};  ///< of cells without a unit
 
+  /// Returns the name of the field, after "surface." if a lubricant has one of that name too.
+  std::string header() const;
   /// Returns e.g. "lubricant.relaxation_time_seconds".
   std::string path() const;
 };
@@ -67,7 +69,8 @@ CandidateTable read_candidates(const std::string& text, const std::string& path,
 
 /// Computes the parameters of candidates with measurements on the server, which stores nothing, and
 /// sets `parameters` to those in which a candidate differs from the base. Sets the refusals of
-/// those that the server rejects.
+/// those that the server rejects. Throws Failure (kExitUsage) if the server estimates parameters
+/// whose uncertainty the table does not state.
 void characterise_candidates(Connection& connection, const CandidateBase& base,
                              CandidateTable& table);
 
@@ -75,8 +78,8 @@ void characterise_candidates(Connection& connection, const CandidateBase& base,
 std::vector<const google::protobuf::FieldDescriptor*> candidate_parameters();
 
 /// Returns the parameter of lubricants or surfaces for a word as of find_parameter(), also after
-/// "lubricant." or "surface.". Returns null and sets `wrong` to a complaint with the nearest name
-/// of both if there is none.
+/// "lubricant." or "surface."; without them first that of lubricants. Returns null and sets `wrong`
+/// to a complaint with the nearest name of both if there is none.
 const google::protobuf::FieldDescriptor* find_candidate_parameter(const std::string& word,
                                                                   std::string& wrong);
 

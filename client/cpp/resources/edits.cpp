@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 
+#include "client/cpp/resources/row_columns.h"
 #include "client/cpp/text/nearest.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
@@ -70,7 +71,16 @@ const std::map<std::string, Wording>& wordings() {
       {"base_oil_class", {"", "", "API group or chemistry; used to estimate missing parameters"}},
       {"condition", {"", "", "Fresh, sheared in a test, or used"}},
       {"flash_point_celsius", {"", "", "Flash point, open cup (ASTM D92), e.g. 210 C"}},
-      {"pour_point_celsius", {"", "", "Pour point (ASTM D97), e.g. -45 C"}},
+      {"pour_point_celsius",
+       {"", "", "Pour point (ASTM D97), e.g. -45 C; a sump below it is refused"}},
+      {"asperity_friction_coefficient",
+       {"", "",
+        "Coefficient zeta of boundary friction, e.g. 0.11; of a lubricant in place of that of the "
+        "surface"}},
+      {"tribofilm_shear_strength_pascals",
+       {"", "",
+        "Shear strength of the tribofilm, e.g. 2 MPa; of a lubricant in place of that of the "
+        "surface"}},
       {"display_name", {"--title", "", "Title"}},
       {"derived_from", {"", "", "The sample it came from, e.g. the fresh oil of a used one"}},
       {"external_sample_id", {"--sample-id", "", "Sample id of the laboratory"}},
@@ -220,19 +230,31 @@ void add_class_flag(FlagList& flags, const FieldDescriptor& field, ResourceEdits
   std::vector<std::string> words = enum_words(*field.enum_type());
   std::vector<int> values(words.size());
   std::iota(values.begin(), values.end(), 1);
-  if (field.enum_type() == v1::Lubricant::BaseOilClass_descriptor()) {
+  const bool is_base_oil = field.enum_type() == v1::Lubricant::BaseOilClass_descriptor();
+  if (is_base_oil) {
     words.insert(words.end(), {"pao", "pag"});
     values.insert(values.end(), {v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN,
                                  v1::Lubricant::BASE_OIL_CLASS_POLYALKYLENE_GLYCOL});
   }
-  flags.choice(flag_of_field(field.name()), words,
-               sentence(wording_of(field).description, label_of_field(field.name())),
-               [&edits, &field, values](int index) {
-                 edits.add(field.name(), [&field, value = values[index]](Message& resource) {
-                   resource.GetReflection()->SetEnum(&resource, &field,
-                                                     field.enum_type()->FindValueByNumber(value));
-                 });
-               });
+  const auto set = [&edits, &field](int value) {
+    edits.add(field.name(), [&field, value](Message& resource) {
+      resource.GetReflection()->SetEnum(&resource, &field,
+                                        field.enum_type()->FindValueByNumber(value));
+    });
+  };
+  Flag& flag = flags.choice(flag_of_field(field.name()), words,
+                            sentence(wording_of(field).description, label_of_field(field.name())),
+                            [set, values](int index) { set(values[index]); });
+  if (!is_base_oil) return;
+  flag.read = [set, read = flag.read](const std::vector<std::string>& texts,
+                                      Complaints& complaints) {
+    const auto* value = find_base_oil_class(texts.front());
+    if (texts.size() > 1 || value == nullptr) {
+      read(texts, complaints);
+    } else {
+      set(value->number());
+    }
+  };
 }
 
 void add_label_flag(FlagList& flags, ResourceEdits& edits) {
@@ -351,6 +373,7 @@ void add_edit_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits& ed
   for (const FieldDescriptor* field : numbers) {
     if (is_documentary(*field)) add_number_flags(flags, {nullptr, field}, edits);
   }
+  if (&type == v1::Lubricant::descriptor()) add_boundary_friction_flag(flags, edits);
   flags.group(&type == v1::Lubricant::descriptor()
                   ? "Parameters of the model (a missing one is fitted or estimated, and shown)"
                   : "Parameters");

@@ -43,6 +43,7 @@ void add_removal_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits&
 
 // Parts of add_edit_flags().
 void add_measurement_list_flags(FlagList& flags, ResourceEdits& edits);
+void add_boundary_friction_flag(FlagList& flags, ResourceEdits& edits);
 void add_provenance_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits& edits);
 
 /// Returns the parameter of the kind for a word such as "thermal-conductivity", its full name, or

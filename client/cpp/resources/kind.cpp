@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
@@ -128,6 +129,17 @@ const ProvenanceEntries& provenance_entries_of(const Message& resource) {
 
 std::string ResourceKind::name_of(const std::string& id_or_name) const {
   return resource_name(collection, id_or_name);
+}
+
+std::string ResourceKind::id_of(const std::string& id_or_name) const {
+  constexpr std::string_view kProjects = "projects/";
+  const std::size_t slash = id_or_name.starts_with(kProjects)
+                                ? id_or_name.find('/', kProjects.size())
+                                : std::string::npos;
+  const std::string prefix = collection + "/";
+  const std::string relative =
+      slash == std::string::npos ? id_or_name : id_or_name.substr(slash + 1);
+  return relative.starts_with(prefix) ? relative.substr(prefix.size()) : id_or_name;
 }
 
 const std::vector<ResourceKind>& resource_kinds() {

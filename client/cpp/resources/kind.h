@@ -66,6 +66,9 @@ struct ResourceKind {
   ResourcePointer make() const { return ResourcePointer(prototype->New()); }
   /// Returns "gearSets/reference-axle" for "reference-axle" and for "gearSets/reference-axle".
   std::string name_of(const std::string& id_or_name) const;
+  /// Returns "reference-axle" for both. Another collection's name is returned unchanged, so that
+  /// the server refuses it.
+  std::string id_of(const std::string& id_or_name) const;
 };
 
 const std::vector<ResourceKind>& resource_kinds();

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <optional>
 
 #include "client/cpp/resources/edits.h"
@@ -32,7 +33,8 @@ std::optional<std::pair<double, std::string>> split_pair(const std::string& flag
     complaints.push_back(start + "has no temperature before '='");
     return std::nullopt;
   }
-  return std::pair(*temperature, text.substr(mark + 1));
+  // 40 K is -233.15 C, not -233.14999999999998 C.
+  return std::pair(std::round(*temperature * 1e9) / 1e9, text.substr(mark + 1));
 }
 
 /// `read` receives temperature and text of one value; it returns false and sets the error if it
@@ -106,6 +108,27 @@ void add_measurement_list_flags(FlagList& flags, ResourceEdits& edits) {
                   });
                   return true;
                 });
+}
+
+void add_boundary_friction_flag(FlagList& flags, ResourceEdits& edits) {
+  add_pair_flag(
+      flags, "--asperity-friction-by-temperature", "--asperity-friction-coefficient",
+      "asperity_friction_by_temperature", "T=COEFFICIENT",
+      "Coefficient of boundary friction at a temperature of the contact inlet, e.g. 40=0.12, in "
+      "place of --asperity-friction-coefficient; repeatable, by rising temperatures; linear "
+      "between "
+      "them.",
+      [&edits](double celsius, const std::string& text, std::string& wrong) {
+        const auto value = read_quantity(text, "", "", false, wrong);
+        if (!value) return false;
+        edits.add("asperity_friction_by_temperature", [celsius, value](Message& resource) {
+          auto& entry =
+              *dynamic_cast<v1::Lubricant&>(resource).add_asperity_friction_by_temperature();
+          entry.set_temperature_celsius(celsius);
+          entry.set_asperity_friction_coefficient(*value);
+        });
+        return true;
+      });
 }
 
 }  // namespace tribodyn::client

@@ -1,5 +1,7 @@
 #include "client/cpp/resources/row_cells.h"
 
+#include <google/protobuf/descriptor.h>
+
 #include <algorithm>
 #include <cctype>
 #include <set>
@@ -92,7 +94,10 @@ void RowCells::read_header(const Find& find, GroupedComplaints& wrong) {
     } else {
       const bool is_as_typed = !column || column->kind == RowColumn::Kind::kColdViscosity;
       const std::string full = is_as_typed ? header_[k] : header_of(*column);
-      if (!seen.insert(full).second) wrong.add(column_text(k) + " occurs twice");
+      // A lubricant and a surface have fields of the same name.
+      const bool has_field = column && column->field != nullptr;
+      const std::string owner = has_field ? column->field->containing_type()->full_name() : "";
+      if (!seen.insert(owner + "." + full).second) wrong.add(column_text(k) + " occurs twice");
       columns_by_name_.emplace(full, header_[k]);
     }
     columns_.push_back(std::move(column));

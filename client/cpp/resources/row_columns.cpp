@@ -11,6 +11,7 @@
 
 #include "client/cpp/resources/edits.h"
 #include "client/cpp/resources/measurement_cells.h"
+#include "client/cpp/text/flags.h"
 #include "client/cpp/text/inputs.h"
 #include "client/cpp/text/nearest.h"
 #include "client/cpp/text/text.h"
@@ -106,7 +107,7 @@ std::vector<HeaderForm> forms_of(const RowColumn& column) {
   if (column.kind == Kind::kMeasurements || column.kind == Kind::kProvenance) return forms;
   const std::string& name = column.field->name();
   if (column.kind == Kind::kNumber && !column.bare_unit.empty()) {
-    forms.push_back({plain_word(label_of_field(name)), ""});
+    forms.push_back({plain_word(label_of_field(name)), column.bare_unit == "C" ? "C" : ""});
   }
   for (const TradeName& trade : trade_names(*column.field)) {
     forms.push_back({plain_word(trade.word), trade.bare_unit});
@@ -465,6 +466,18 @@ std::optional<RowColumn> find_column(const ResourceKind& kind, const std::string
       column.bare_unit = split.unit.empty() ? "mPa s" : split.unit;
       return column;
     }
+  }
+  const FieldDescriptor* table = kind.prototype->GetDescriptor()->FindFieldByName(split.word);
+  const bool is_table = table != nullptr && table->is_repeated() && !is_output_only(*table) &&
+                        table->name() != "labels" && table->name() != "provenance";
+  if (is_table) {
+    wrong = kNotAColumn;
+    wrong += "; use JSON";
+    if (table->number() == v1::Lubricant::kAsperityFrictionByTemperatureFieldNumber &&
+        table->containing_type() == v1::Lubricant::descriptor()) {
+      wrong += ", or " + flag_of_field(table->name()) + " of `tribodyn lubricants create`";
+    }
+    return std::nullopt;
   }
   const std::string meant = nearest(split.word, known);
   wrong = "is unknown" + (meant.empty() ? std::string("; `tribodyn help files` lists the columns")

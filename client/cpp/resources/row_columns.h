@@ -36,6 +36,9 @@ struct RowColumn {
   bool is_number() const { return kind == Kind::kNumber || kind == Kind::kColdViscosity; }
 };
 
+/// How a complaint of find_column() about a header begins that is a list of the resource.
+inline constexpr char kNotAColumn[] = "is a table itself, which no cell can contain";
+
 /// Returns the columns that every table of the kind may have, texts and classes first, without
 /// labels and provenance.
 std::vector<RowColumn> columns_of(const ResourceKind& kind);

@@ -176,10 +176,23 @@ RowTable read_row_table(const std::string& text, const std::string& path, const 
 std::string row_table(const ResourceKind& kind, const std::vector<ResourcePointer>& resources,
                       std::string& lost) {
   std::set<std::string> keys;
+  std::vector<std::string> incomplete;  // lubricants
   lost.clear();
   for (const ResourcePointer& resource : resources) {
     for (const v1::Label& label : labels_of(*resource)) keys.insert(label.key());
-    if (has_other_tables(*resource)) lost = "measured profiles";
+    if (!has_other_tables(*resource)) continue;
+    if (dynamic_cast<const v1::Lubricant*>(&*resource) != nullptr) {
+      incomplete.push_back(printable(resource_id(text_field(*resource, "name"))));
+    } else {
+      lost = "measured profiles";  // their parameters are in the row
+    }
+  }
+  if (!incomplete.empty()) {
+    throw Failure(kExitUsage,
+                  "a row cannot contain boundary friction by temperature, which these lubricants "
+                  "have: " +
+                      joined(incomplete, ", ") +
+                      ". Export JSON (without --output csv).\n  Nothing was written.");
   }
   std::vector<RowColumn> columns = columns_of(kind);
   const std::vector<RowColumn> provenance = provenance_columns(resources);

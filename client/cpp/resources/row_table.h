@@ -44,7 +44,8 @@ void leave_law_to_viscosities(const RowCells& cells, const CsvLine& line,
 
 /// Returns the table of these resources: values that were stated or measured, with their origin;
 /// cells of values that the server computed are empty. Sets `lost` to the data that a row cannot
-/// hold but JSON can; empty if there are none.
+/// hold but JSON can and that the model does not need; empty if there are none. Throws Failure
+/// (kExitUsage) if a lubricant has boundary friction by temperature.
 std::string row_table(const ResourceKind& kind, const std::vector<ResourcePointer>& resources,
                       std::string& lost);
 

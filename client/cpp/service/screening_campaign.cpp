@@ -161,6 +161,9 @@ CandidateTable candidates_of(const v1::Campaign& campaign) {
   CandidateTable table;
   const auto count = static_cast<std::size_t>(campaign.candidates());
   for (std::size_t i = 0; i < count; ++i) table.names.push_back(std::to_string(i + 1));
+  for (int i = 0; i < campaign.candidate_lubricants_size(); ++i) {
+    table.names.at(static_cast<std::size_t>(i)) = resource_id(campaign.candidate_lubricants(i));
+  }
   table.cells.resize(count);
   table.refusals.resize(count);
   const auto add_column = [&](const std::string& header, bool is_carried, const auto& cell) {
@@ -182,7 +185,9 @@ CandidateTable candidates_of(const v1::Campaign& campaign) {
   }
   for (const v1::CandidateAttribute& each : campaign.candidate_attributes()) {
     if (each.name() == kNames && !each.texts().empty()) {
-      table.names.assign(each.texts().begin(), each.texts().end());
+      if (campaign.candidate_lubricants().empty()) {
+        table.names.assign(each.texts().begin(), each.texts().end());
+      }
     } else if (const FieldDescriptor* field = uncertain_parameter(each)) {
       table.uncertainties.push_back({field, {each.values().begin(), each.values().end()}});
     } else {
@@ -204,6 +209,14 @@ std::string attribute_text(const std::string& header) {
     out += is_allowed ? c : '_';
   }
   return out.empty() ? "_" : out;
+}
+
+v1::RankCandidatesResponse figures_ranking(Connection& connection,
+                                           v1::RankCandidatesRequest request) {
+  request.set_count(1000);
+  request.clear_uncertainties();
+  request.set_ignore_stated_uncertainties(true);
+  return connection.rank_candidates(request);
 }
 
 std::vector<std::size_t> accepted_candidates(const CandidateTable& table) {

@@ -9,6 +9,11 @@
 
 namespace tribodyn::client {
 
+/// Ranks the candidates of a campaign by their figures alone, which solves no points: what the
+/// service says of up to 1000 of them, such as their warnings and refusals.
+v1::RankCandidatesResponse figures_ranking(Connection& connection,
+                                           v1::RankCandidatesRequest request);
+
 /// Returns the indices of the candidates without a refusal: those of the campaign, in its order.
 std::vector<std::size_t> accepted_candidates(const CandidateTable& table);
 

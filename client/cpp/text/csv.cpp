@@ -1,12 +1,14 @@
 #include "client/cpp/text/csv.h"
 
 #include <google/protobuf/descriptor.h>
+#include <google/protobuf/reflection.h>
 #include <google/protobuf/timestamp.pb.h>
 #include <google/protobuf/util/time_util.h>
 
 #include <algorithm>
 
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/warnings.h"
 #include "tribodyn/v1/results.pb.h"
 
 namespace tribodyn::client {
@@ -112,6 +114,10 @@ void append_fields(const Message& message, std::string_view prefix, CsvRow& row)
     if (field.is_repeated()) {
       if (field.message_type() == v1::FlankLoss::descriptor()) {
         append_flanks(message, field, name, row);
+      } else if (field.message_type() == v1::RangeWarning::descriptor()) {
+        row.emplace_back(
+            name, codes_of(message.GetReflection()->GetRepeatedFieldRef<v1::RangeWarning>(message,
+                                                                                          &field)));
       } else {
         row.emplace_back(name + "_count",
                          std::to_string(message.GetReflection()->FieldSize(message, &field)));

@@ -42,7 +42,8 @@ using CsvRow = std::vector<std::pair<std::string, std::string>>;
 /// as their shortest exact text, unset optional fields are empty. The headers depend only on the
 /// message's type and keep the unit suffix. An Extremes field "film_ratio" gives
 /// "minimum_film_ratio" and so on. A repeated field of at most `kFlankSlots` numbered parts
-/// (FlankLoss) is written part by part; of any other repeated field only the count is written.
+/// (FlankLoss) is written part by part, of warnings the codes; of any other repeated field only the
+/// count.
 /// Sensitivities are left out: sensitivity_report.h makes cells of them.
 void append_fields(const google::protobuf::Message& message, std::string_view prefix, CsvRow& row);
 inline constexpr int kFlankSlots = 3;

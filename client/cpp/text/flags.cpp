@@ -199,9 +199,23 @@ Flag& FlagList::choice(const std::string& names, const std::vector<std::string>&
 
 void FlagList::toggle(const std::string& names, const std::string& description,
                       const std::function<void()>& set) {
+  truth(names, description, [set](bool is_on) {
+    if (is_on) set();
+  });
+}
+
+void FlagList::truth(const std::string& names, const std::string& description,
+                     const std::function<void(bool)>& set) {
   Flag flag{names, "", description, group_};
   flag.is_switch = true;
-  flag.read = [set](const std::vector<std::string>&, Complaints&) { set(); };
+  flag.read = [set, name = flag.first_name()](const std::vector<std::string>& texts,
+                                              Complaints& complaints) {
+    if (texts.back() == "true" || texts.back() == "false") {
+      set(texts.back() == "true");
+    } else {
+      complaints.push_back(complaint(name, texts.back(), "must be true or false"));
+    }
+  };
   flags_.push_back(std::move(flag));
 }
 

@@ -18,7 +18,7 @@ struct Flag {
   std::string group;        ///< heading in the help
   bool is_switch = false;
   bool is_repeatable = false;
-  /// Reads all texts given (never empty; {"true"} for a switch).
+  /// Reads all texts given (never empty; {"true"} or {"false"} for a switch).
   std::function<void(const std::vector<std::string>&, Complaints&)> read = {};
   /// Another name of a flag that the help lists already.
   bool is_hidden = false;
@@ -74,6 +74,9 @@ class FlagList {
                 const std::function<bool(const std::string&)>& add);
   void toggle(const std::string& names, const std::string& description,
               const std::function<void()>& set);
+  /// Adds a switch that --name=false sets to false.
+  void truth(const std::string& names, const std::string& description,
+             const std::function<void(bool)>& set);
 
   /// Adds a flag without `read`. The caller sets it, and other members, at once: adding another
   /// flag invalidates the reference.

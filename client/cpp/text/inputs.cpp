@@ -32,8 +32,12 @@ void append_switches(const google::protobuf::Message& message, const std::string
   for (int i = 0; i < descriptor->field_count(); ++i) {
     const auto& field = *descriptor->field(i);
     if (field.cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_BOOL) continue;
-    if (!message.GetReflection()->GetBool(message, &field)) continue;
-    text += (text.empty() ? "" : ", ") + prefix + field.name();
+    const bool is_on = message.GetReflection()->GetBool(message, &field);
+    // A switch that a preset decides may be set to false.
+    if (!is_on && !(field.has_presence() && message.GetReflection()->HasField(message, &field))) {
+      continue;
+    }
+    text += (text.empty() ? "" : ", ") + prefix + (is_on ? "" : "without ") + field.name();
   }
 }
 
@@ -162,13 +166,15 @@ std::string distinction(const v1::Simulation& simulation, const Differences& dif
 }
 
 std::string model_options_text(const v1::ModelOptions& options) {
+  const bool is_paper = options.preset() == v1::ModelOptions::PAPER;
   std::string text;
   append_switches(options, "", text);
   if (options.pressure_viscosity_index() == v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_HOUPERT) {
     text += text.empty() ? "Houpert's Z" : ", Houpert's Z";
   }
   append_switches(options.as_published(), "as published ", text);
-  return text.empty() ? "as corrected" : text;
+  if (text.empty()) return is_paper ? "paper as corrected" : "recommended";
+  return is_paper ? "paper, " + text : text;
 }
 
 std::string study_text(const v1::Simulation& simulation) {
@@ -228,9 +234,7 @@ void add_provenance(const v1::SimulationResult& result, bool shows_all, Sheet& s
 void add_input_warnings(const InputWarnings& warnings, Sheet& sheet) {
   if (!warnings.empty()) sheet.heading("Notes on lubricant and surface");
   for (const v1::RangeWarning& warning : warnings) {
-    std::string words = warning_words(warning.code());
-    words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
-    sheet.remark(words + ": " + warning.message() + " [" + warning.code() + "]");
+    sheet.remark(note_sentence(shown_warning(warning)));
   }
 }
 

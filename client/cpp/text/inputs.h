@@ -34,8 +34,8 @@ std::string inputs_text(const v1::Simulation& simulation, const char* celsius = 
 std::string distinction(const v1::Simulation& simulation, const Differences& differences,
                         const char* celsius = "C");
 
-/// Returns e.g. "isothermal, newtonian, as published eq17_atan"; "as corrected" if no option is
-/// set.
+/// Returns what departs from the preset, after "paper, " for that one, e.g. "isothermal, newtonian,
+/// as published eq17_atan"; "recommended" or "paper as corrected" if nothing does.
 std::string model_options_text(const v1::ModelOptions& options);
 
 /// Returns e.g. "cruise at 72.5 km/h" or "inefficiency curve from 20 to 140 km/h, up-sweep".

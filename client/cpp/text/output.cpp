@@ -6,11 +6,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 
 #include "client/cpp/failure.h"
+#include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
 
@@ -23,6 +25,24 @@ std::string json_text(const google::protobuf::Message& message) {
   const auto status = google::protobuf::util::MessageToJsonString(message, &text, options);
   if (!status.ok()) throw Failure(kExitFailed, "cannot write JSON: " + status.ToString());
   return text;
+}
+
+std::string json_quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : printable(text)) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+std::string json_number(double value) { return std::isfinite(value) ? shortest(value) : "null"; }
+
+std::string json_with(std::string object, const std::string& name, const std::string& value) {
+  object.erase(object.rfind('}'));
+  object.erase(object.find_last_not_of(" \n") + 1);
+  return object + (object.back() == '{' ? "" : ",") + "\n " + json_quoted(name) + ": " + value +
+         "\n}\n";
 }
 
 void write_file(const std::string& path, const std::string& text) {

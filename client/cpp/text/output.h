@@ -14,6 +14,13 @@ enum class OutputFormat { kTable, kCsv, kJson };
 /// indented, with fields that are zero.
 std::string json_text(const google::protobuf::Message& message);
 
+/// Returns "\"text\"" as JSON.
+std::string json_quoted(const std::string& text);
+/// Returns the number as JSON; null if it is not finite.
+std::string json_number(double value);
+/// Returns the JSON object with one more member; `value` is JSON.
+std::string json_with(std::string object, const std::string& name, const std::string& value);
+
 /// Replaces the file in one step: a reader sees either the old text or the new text. Throws Failure
 /// if the file cannot be written.
 void write_file(const std::string& path, const std::string& text);

@@ -5,9 +5,20 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <sstream>
 
+#include "proto/resource_kinds.h"
+
 namespace tribodyn::client {
+namespace {
+
+#define TRIBODYN_COLLECTION(Resource, field, collection, seed) #collection,
+constexpr std::string_view kCollections[] = {
+    TRIBODYN_RESOURCE_KINDS(TRIBODYN_COLLECTION) "simulations", "campaigns"};
+#undef TRIBODYN_COLLECTION
+
+}  // namespace
 
 int display_width(std::string_view text) {
   return static_cast<int>(std::count_if(text.begin(), text.end(), [](char c) {
@@ -140,7 +151,19 @@ std::string resource_name(std::string_view collection, std::string_view id_or_na
 }
 
 std::string resource_id(std::string_view name) {
-  return std::string(name.substr(name.rfind('/') + 1));  // npos + 1 == 0: the whole name
+  constexpr std::string_view kProjects = "projects/";
+  std::string_view relative = name;
+  if (name.starts_with(kProjects)) {
+    relative.remove_prefix(std::min(name.size(), name.find('/', kProjects.size())));
+    if (!relative.empty()) relative.remove_prefix(1);
+  }
+  const std::size_t slash = relative.find('/');
+  if (slash == std::string_view::npos) return std::string(name);
+  const std::string_view id = relative.substr(slash + 1);
+  const bool is_name = id.find('/') == std::string_view::npos &&
+                       std::find(std::begin(kCollections), std::end(kCollections),
+                                 relative.substr(0, slash)) != std::end(kCollections);
+  return std::string(is_name ? id : name);
 }
 
 }  // namespace tribodyn::client

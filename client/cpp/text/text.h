@@ -43,7 +43,8 @@ std::string joined(const std::vector<std::string>& parts, std::string_view separ
 /// Returns "lubricants/my-oil" for "my-oil" and for "lubricants/my-oil".
 std::string resource_name(std::string_view collection, std::string_view id_or_name);
 
-/// Returns "my-oil" for "lubricants/my-oil".
+/// Returns "my-oil" for "lubricants/my-oil" and for "projects/p/lubricants/my-oil". Any other text
+/// stays as it is: "75W/90" is no name, and the server says so.
 std::string resource_id(std::string_view name);
 
 }  // namespace tribodyn::client

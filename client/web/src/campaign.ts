@@ -1,9 +1,9 @@
 import { get, url } from './api/client';
-import type { Campaign } from './api/types';
-import { inputWords } from './comparison';
+import type { Campaign, Constraint } from './api/types';
+import { inputUnit, inputWords, shownUnit } from './inputs';
 import { FIGURES, figureWords } from './figures';
 import { rounded } from './format';
-import { celsius, kelvin, metres, pascals, perPascal, plain, scaled, shown, watts, type Unit } from './units';
+import { kelvin, plain, shown, type Unit } from './units';
 
 /** What a column is to the reader: chosen by whoever made the campaign, or computed. */
 export type ColumnKind = 'candidate' | 'condition' | 'figure';
@@ -22,6 +22,7 @@ export interface Rows {
   candidates: number[]; // counted from 0
   conditions: number[];
   refusals: number[]; // 0: the row has figures; -1: not computed yet
+  isWithheld: boolean[]; // a warning of the row withholds the verdict
   columns: Column[];
   texts: { name: string; values: string[] }[]; // attributes in words, one for each candidate
   isCut: boolean; // the campaign has more rows
@@ -37,19 +38,19 @@ export const MOST_ROWS = 12_000;
 export const MOST_CANDIDATES = 5_000; // with their parameters: some 3 MB
 
 /** Columns about the computation itself. */
-const ABOUT = ['refusal_number', 'settled', 'period_in_mesh_cycles', 'model', 'candidate', 'condition'];
-
-/** Units by the ends of names, which carry them; the first that fits. */
-const UNITS: [RegExp, Unit][] = [
-  [/_per_pascal$/, perPascal], [/_pascal_seconds$/, scaled('mPa s', 1e3)], [/_pascals$/, pascals], [/_seconds$/, scaled('µs', 1e6)],
-  [/_(rise|rise_maximum|coefficient)_kelvin$/, plain('K')], [/_kelvin$/, kelvin], [/_celsius$/, celsius], [/_kilometres_per_hour$/, plain('km/h')],
-  [/_newton_metres$/, plain('N m')], [/_metres$/, metres], [/_watts$/, watts], [/_percent$/, plain('%')], [/_degrees$/, plain('°')],
-];
+const ABOUT = ['refusal_number', 'settled', 'period_in_mesh_cycles', 'model', 'candidate', 'condition', 'verdict_withheld', 'warning_bits'];
 
 const ELASTICITY = 'elasticity.'; // then the figure, '.' and the parameter
 
-/** The unit in which a column is shown. */
-const unitOf = (name: string, symbol: string): Unit => (name.startsWith(ELASTICITY) ? plain('') : UNITS.find(([end]) => end.test(name))?.[1] ?? plain(symbol));
+/** Figures that are temperatures and not differences of temperatures. */
+const TEMPERATURES = ['contact_temperature_maximum_kelvin', 'contact_temperature_mean_kelvin', 'contact_temperature_kelvin'];
+
+/** The unit in which a column is shown: by the schema, of figures by the table. */
+function unitOf(name: string, kind: ColumnKind, table: Table, constraints: Constraint[]): Unit {
+  if (kind !== 'figure') return inputUnit(name, constraints);
+  if (name.startsWith(ELASTICITY)) return plain('');
+  return TEMPERATURES.includes(name) ? kelvin : shownUnit(table.units[name] ?? '');
+}
 
 const CONDITIONS: Record<string, string> = {
   speed_kilometres_per_hour: 'Speed', sump_temperature_celsius: 'Sump', ascent_angle_degrees: 'Ascent',
@@ -89,18 +90,19 @@ function labelOf(name: string, kind: ColumnKind): string {
 }
 
 /** Reads the rows of a campaign that are shown: its first ones, finished or not. */
-export async function readRows(campaign: Campaign, signal: AbortSignal): Promise<Rows> {
+export async function readRows(campaign: Campaign, constraints: Constraint[], signal: AbortSignal): Promise<Rows> {
   const factors = (campaign.candidate_columns ?? []).map((each) => each.path!);
   const attributes = (campaign.candidate_attributes ?? []).filter((each) => (each.texts ?? []).length === 0).map((each) => each.name!);
   const states = campaign.rig ? Object.keys(RIG_CONDITIONS) : Object.keys(CONDITIONS).filter((name) => new Set((campaign.conditions ?? []).map((each) => each[name as keyof typeof each])).size > 1);
   const read = (columns: string[]) => get<Table>(url(`${campaign.name}:read`, { alt: 'columns', columns, row_count: MOST_ROWS }), signal);
   const [figures, inputs] = await Promise.all([read([]), read(['candidate', 'condition', ...states, ...factors, ...attributes])]);
   const columnsOf = (table: Table, names: string[], kind: ColumnKind): Column[] =>
-    names.map((name) => ({ name, kind, label: labelOf(name, kind), unit: unitOf(name, table.units[name] ?? ''), values: table.columns[name] ?? [] }));
+    names.map((name) => ({ name, kind, label: labelOf(name, kind), unit: unitOf(name, kind, table, constraints), values: table.columns[name] ?? [] }));
   return {
     candidates: inputs.columns['candidate'] as number[],
     conditions: inputs.columns['condition'] as number[],
     refusals: figures.columns['refusal_number'] as number[],
+    isWithheld: (figures.columns['verdict_withheld'] ?? []).map((each) => each === 1),
     columns: [
       ...columnsOf(inputs, [...factors, ...attributes], 'candidate'),
       ...columnsOf(inputs, states, 'condition'),

@@ -1,8 +1,8 @@
 import type { BatchCreateLubricantsResponse, CandidateAttribute, CandidateColumn, Constraint, Lubricant, Surface } from './api/types';
 import { ApiError, atField, change, url } from './api/client';
-import { inputWords } from './comparison';
+import { constraintAt, inputUnit, inputWords } from './inputs';
 import { DATA_SHEET, symbolOf } from './lubricant_fields';
-import { plain, readNumber, scaled, type Unit } from './units';
+import { kelvin, plain, readNumber, scaled, type Unit } from './units';
 
 /** A table of candidates as text, cut into cells. */
 export interface Table {
@@ -92,8 +92,9 @@ export function roleOf(header: string, parameters: string[]): Role {
   if (['name', 'candidate', 'id', 'candidate_id'].includes(text)) return 'name';
   const isUncertainty = /\.(standard_)?uncertainty$/.test(text);
   const plainText = text.replace(/\.(standard_)?uncertainty$/, '').replace(/^measurements\./, '');
-  const path = parameters.find((each) => [each, each.replace(/^\w+\./, ''), fieldOf(each)].includes(plainText))
-    ?? parameters.find((each) => [bare(fieldOf(each)), word(inputWords(each))].includes(plainText));
+  // A name that lubricants and surfaces have is that of the lubricant.
+  const path = parameters.filter((each) => [each, each.replace(/^\w+\./, ''), fieldOf(each)].includes(plainText))[0]
+    ?? parameters.filter((each) => [bare(fieldOf(each)), word(inputWords(each))].includes(plainText)).at(-1);
   if (path) return `${isUncertainty ? 'uncertainty' : 'parameter'}:${path}`;
   const measured = [...MEASURED].find(([field, label]) => plainText === field || plainText === word(label));
   if (measured && !isUncertainty) return `measured:${measured[0]}`;
@@ -116,8 +117,8 @@ const MORE_UNITS: Record<string, Unit[]> = {
 export function unitsOf(role: Role, constraints: Constraint[] | undefined): Unit[] {
   const [kind, path] = role.split(':');
   if (!path || kind === 'name') return [];
-  const unit = constraints?.find((each) => each.field === fieldOf(path) && (kind === 'measured' ? each.message === 'LubricantMeasurements' : each.message !== 'LubricantMeasurements'))?.unit ?? '';
-  const isTemperature = unit === 'K' && /temperature_kelvin$/.test(path) && kind !== 'uncertainty';
+  const unit = (kind === 'measured' ? constraints?.find((each) => each.message === 'LubricantMeasurements' && each.field === path) : constraintAt(path, constraints))?.unit ?? '';
+  const isTemperature = inputUnit(path, constraints) === kelvin && kind !== 'uncertainty';
   return unit === '' ? [] : [plain(symbolOf(unit)), ...(isTemperature ? [{ symbol: '°C', factor: 1, offset: -273.15 }] : MORE_UNITS[unit] ?? [])];
 }
 
@@ -163,9 +164,11 @@ const within = (resource: unknown, path: string): number | undefined => {
   return typeof value === 'number' ? value : undefined;
 };
 
-/** The value that a base has of a parameter. */
-export const baseValue = (bases: Bases, path: string): number | undefined =>
-  (path.startsWith('lubricant.') ? within(bases.lubricant, path.slice('lubricant.'.length)) : within(bases.surface, path.slice('surface.'.length)));
+/** The value that a base has of a parameter. An oil without boundary friction has that of the surface, in a field of the same name. */
+export const baseValue = (bases: Bases, path: string): number | undefined => {
+  const [, resource, name] = path.match(/^(lubricant|surface)\.(.*)$/)!;
+  return (resource === 'lubricant' ? within(bases.lubricant, name!) : undefined) ?? within(bases.surface, name!);
+};
 
 const MOST_NAME = 63; // characters of the name of an attribute
 
@@ -243,10 +246,15 @@ function put(message: Record<string, unknown>, path: string, value: number): voi
   else put((message[first!] ??= {}) as Record<string, unknown>, rest.join('.'), value);
 }
 
+/** What the service estimated of an oil with a standard uncertainty: a column of values cannot carry that. */
+const estimatesOf = (lubricant: Lubricant, isGiven: boolean): string[] =>
+  (lubricant.provenance ?? []).filter((each) => each.computed && each.provenance === 'PROVENANCE_ASSUMED' && (each.standard_uncertainty ?? 0) > 0
+    && !(isGiven && each.field!.startsWith('pressure_viscosity_'))).map((each) => each.field!);
+
 /**
  * Has the service compute the parameters of lubricants from their data sheets, as it does for an oil
  * that is entered; nothing is stored. Adds the columns in which a candidate differs from the base, and
- * those that the campaign has.
+ * those that the campaign has. Throws if it estimates a parameter with a standard uncertainty.
  */
 export async function characterise(candidates: Candidates, bases: Bases, parameters: string[], signal: AbortSignal, present?: Present): Promise<Candidates> {
   if (candidates.measurements.length === 0) return candidates;
@@ -259,7 +267,7 @@ export async function characterise(candidates: Candidates, bases: Bases, paramet
       return { lubricant_id: `candidate-of-a-campaign-${first + i + 1}`, lubricant };
     });
     try {
-      const answer = await change<BatchCreateLubricantsResponse>('POST', `${url('lubricants')}:batchCreate`, { requests, validate_only: true, read_mask: paths.join(',') }, signal);
+      const answer = await change<BatchCreateLubricantsResponse>('POST', `${url('lubricants')}:batchCreate`, { requests, validate_only: true, read_mask: [...paths, 'provenance'].join(',') }, signal);
       found.push(...answer.lubricants!);
     } catch (refusal) {
       if (!(refusal instanceof ApiError) || first === 0) throw refusal;
@@ -269,6 +277,11 @@ export async function characterise(candidates: Candidates, bases: Bases, paramet
     }
   }
   const isGiven = bases.lubricant.improved_yasutomi !== undefined; // the law of the base gives its alpha*
+  const estimated = [...new Set(found.flatMap((each) => estimatesOf(each, isGiven)))];
+  if (estimated.length > 0) {
+    throw new Error('A table cannot carry the uncertainty of estimates, and the service would estimate '
+      + `${estimated.map((each) => inputWords(`lubricant.${each}`)).join(', ')}. Add the oils (Fluids, import) and screen them as fluids.`);
+  }
   const columns = paths.filter((path) => !(isGiven && path.startsWith('pressure_viscosity_'))).flatMap((path): CandidateColumn[] => {
     const usual = within(bases.lubricant, path);
     const values = found.map((each) => within(each, path) ?? usual);

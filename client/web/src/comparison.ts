@@ -1,12 +1,13 @@
-import type { ComparedLubricant, ComparedPoint, ComparePointsRequest, ComparePointsResponse, ExplainPointsRequest, PointCondition, UncertainFigure } from './api/types';
+import type { ComparedDifferenceVerdict, ComparedLubricant, ComparedPoint, ComparePointsRequest, ComparePointsResponse, ExplainPointsRequest, PointCondition, UncertainFigure } from './api/types';
 import type { Line, Spec } from './charts/spec';
-import { finite } from './components/num';
+import { finite, isUncertain } from './components/num';
 import { rounded } from './format';
 import { isInRpm, metres, plain, RPM, scaled, shown, watts, type Unit } from './units';
-import { PARAMETERS } from './lubricant_fields';
+import { modelBodyOf, modelFlagsOf, modelQueryOf, modelRequestOf, type Model } from './model';
+import { remarksAt, runsText, type Remark } from './validity';
 
 /** What the form of a comparison holds. */
-export interface CompareRequest {
+export interface CompareRequest extends Model {
   a: string; // id, with or without "@revision"
   b: string;
   sump: number; // [C]
@@ -16,7 +17,6 @@ export interface CompareRequest {
   first: number; // [km/h]
   last: number; // [km/h]
   step: number; // [km/h]
-  options: string[];
   sumpUncertainty: number; // [K]
   correlation: number; // of estimates
 }
@@ -29,14 +29,14 @@ export function compareRequestOf(query: URLSearchParams): CompareRequest {
     [key, query.has(word) ? Number(query.get(word)) : USUAL[key as keyof typeof USUAL]])) as typeof USUAL;
   return {
     a: query.get('a') ?? '', b: query.get('b') ?? '', gearSet: query.get('gear') ?? '', surface: query.get('surface') ?? '', vehicle: query.get('vehicle') ?? '',
-    options: (query.get('opt') ?? '').split(',').filter((each) => each !== ''), ...numbers,
+    ...modelRequestOf(query), ...numbers,
   };
 }
 
 export function compareQueryOf(request: CompareRequest): Record<string, string | undefined> {
   return {
     a: request.a || undefined, b: request.b || undefined, gear: request.gearSet || undefined,
-    surface: request.surface || undefined, vehicle: request.vehicle || undefined, opt: request.options.join(',') || undefined,
+    surface: request.surface || undefined, vehicle: request.vehicle || undefined, ...modelQueryOf(request),
     ...Object.fromEntries(Object.entries(WORDS).map(([key, word]) => {
       const value = request[key as keyof typeof USUAL];
       return [word, value === USUAL[key as keyof typeof USUAL] ? undefined : String(value)];
@@ -65,7 +65,7 @@ const common = (request: CompareRequest) => ({
   ...(request.gearSet ? { gear_set: `gearSets/${request.gearSet}` } : {}),
   ...(request.surface ? { surface: `surfaces/${request.surface}` } : {}),
   ...(request.vehicle ? { vehicle: `vehicles/${request.vehicle}` } : {}),
-  ...(request.options.length > 0 ? { model_options: Object.fromEntries(request.options.map((each) => [each, true])) } : {}),
+  ...modelBodyOf(request),
   ...(request.sumpUncertainty !== 0 ? { sump_temperature_uncertainty_kelvin: request.sumpUncertainty } : {}),
   estimate_correlation: request.correlation,
 });
@@ -94,7 +94,7 @@ const flagsOf = (request: CompareRequest, speeds: number[], project: string): st
     ...(request.vehicle ? ['--vehicle', request.vehicle] : []),
     ...(request.sumpUncertainty !== 0 ? ['--sump-temperature-uncertainty-kelvin', request.sumpUncertainty] : []),
     '--estimate-correlation', request.correlation,
-    ...request.options.map((each) => `--${each.replaceAll('_', '-')}`)].join(' ');
+    ...modelFlagsOf(request)].join(' ');
 
 /** Commands that compute the same figures. */
 export const compareCommandsOf = (request: CompareRequest, explained: number[], project: string): string[] => [
@@ -125,18 +125,46 @@ const mapped = (value: number | string | undefined, unit: Unit): number | null =
   return number === null ? null : shown(number, unit);
 };
 
-/** A line with the interval of its figures over speeds. */
+/** What a verdict says of a lubricant beside the reference. */
+export const VERDICTS: Record<ComparedDifferenceVerdict, string> = {
+  VERDICT_UNSPECIFIED: 'no figure', LOWER: 'loses less', HIGHER: 'loses more', CANNOT_BE_TOLD_APART: 'cannot be told apart',
+  WITHHELD: 'no verdict: a warning withholds it', UNCERTAINTY_NOT_STATED: 'no verdict: uncertainty not stated',
+};
+
+/** A verdict in a sentence about both. */
+export function verdictWords(verdict: ComparedDifferenceVerdict | undefined, a: string, b: string): string {
+  const words = VERDICTS[verdict ?? 'VERDICT_UNSPECIFIED'];
+  if (verdict === 'CANNOT_BE_TOLD_APART') return `${a} and ${b} ${words}`;
+  return verdict === 'LOWER' || verdict === 'HIGHER' ? `${b} ${words}` : `${a} and ${b}: ${words}`;
+}
+
+/** The warnings of compared lubricants, each with the lubricants and speeds that it holds for. */
+export const comparedRemarks = (lubricants: ComparedLubricant[], titles: string[], speeds: number[], unit: Unit): Remark[] =>
+  remarksAt(lubricants.flatMap((lubricant, k) => {
+    const points = lubricant.points ?? [];
+    const all = new Map(points.flatMap((point) => (point.warnings ?? []).map((warning) => [warning.code, warning] as const)));
+    return [...all].map(([code, warning]) => {
+      const runs = runsText(speeds, (_, row) => points[row]?.warnings?.some((each) => each.code === code) === true, (speed) => speedText(speed, unit));
+      return { warning, where: `${titles[k]}${runs && ` ${runs}`}` };
+    });
+  }));
+
+/** A line with the interval of its figures over speeds, where the inputs decide one. */
 export function intervalLine(label: string, series: number, speeds: number[], figures: (UncertainFigure | undefined)[], unit: Unit, hollow: boolean[]): Line {
   const column = (read: (figure: UncertainFigure) => number | undefined) =>
     figures.map((figure) => (figure === undefined ? null : mapped(read(figure), unit)));
   return {
     label, series, variant: 0, x: speeds, hollow,
     y: column((figure) => figure.value),
-    low: column((figure) => figure.interval_minimum),
-    high: column((figure) => figure.interval_maximum),
+    low: column((figure) => (isUncertain(figure) ? figure.interval_minimum : undefined)),
+    high: column((figure) => (isUncertain(figure) ? figure.interval_maximum : undefined)),
     error: figures.map((figure) => (figure === undefined ? null : mapped(figure.solver_error, { ...unit, offset: 0 }))),
   };
 }
+
+/** A figure without an interval if nobody stated an uncertainty. */
+const statedFigure = (figure: UncertainFigure | undefined, isStated: boolean): UncertainFigure | undefined =>
+  (isStated || figure === undefined ? figure : { value: figure.value, solver_error: figure.solver_error });
 
 /** The unit of the axis of speeds: those of the pinion, which the service answers, are proportional to those of the vehicle. */
 export function comparedSpeedUnit(answer: ComparePointsResponse | null | undefined, speeds: number[]): Unit {
@@ -155,45 +183,24 @@ export function figuresSpec(lubricants: ComparedLubricant[], titles: string[], s
     title: `${quantity.label}, ${quantity.unit.symbol}`, xLabel, yLabel: quantity.unit.symbol,
     lines: lubricants.map((lubricant, k) => {
       const points = lubricant.points ?? [];
-      return intervalLine(titles[k]!, k, speeds, points.map((point) => (point.refusal_reason ? undefined : quantity.figure(point))),
+      return intervalLine(titles[k]!, k, speeds, points.map((point) => (point.refusal_reason ? undefined : statedFigure(quantity.figure(point), lubricant.uncertainty_stated === true))),
         quantity.unit, points.map((point) => point.contact_loss === true));
     }),
     parted: [], caution: [], outside: [], levels: [], fromZero: false,
   };
 }
 
-/** Differences from the first lubricant over places of the axis: hollow where the difference is within its uncertainty. */
+/** Differences from the first lubricant over places of the axis: hollow where they are no verdict. */
 export function differenceSpec(lubricants: ComparedLubricant[], titles: string[], speeds: number[], series: number[], xLabel: string): Spec {
   return {
     title: `Difference from ${titles[0]}, percentage points`, xLabel, yLabel: '% points',
     lines: lubricants.slice(1).map((lubricant, k) => {
       const differences = lubricant.differences ?? [];
-      return intervalLine(titles[k + 1]!, series[k + 1]!, speeds, differences.map((each) => each.difference_percent), POINTS,
-        differences.map((each) => each.verdict === 'CANNOT_BE_TOLD_APART'));
+      return intervalLine(titles[k + 1]!, series[k + 1]!, speeds, differences.map((each) => statedFigure(each.difference_percent, each.verdict !== 'UNCERTAINTY_NOT_STATED')), POINTS,
+        differences.map((each) => each.verdict !== 'LOWER' && each.verdict !== 'HIGHER'));
     }),
     parted: [], caution: [], outside: [], levels: [{ value: 0, label: '' }], fromZero: false,
   };
-}
-
-const LABELS = new Map(PARAMETERS.map((each) => [`lubricant.${each.path}`, each.label]));
-const INPUTS: Record<string, string> = {
-  'lubricant.pressure_viscosity_coefficient': 'Pressure-viscosity coefficient α*', 'lubricant.pressure_viscosity_temperature': 'Temperature of α*',
-  'solid.youngs_modulus': "Young's modulus of the flanks", 'solid.poissons_ratio': "Poisson's ratio of the flanks",
-  'solid.thermal_conductivity': 'Thermal conductivity of the flanks', 'solid.density': 'Density of the flanks',
-  'solid.specific_heat_capacity': 'Heat capacity of the flanks', 'roughness.composite_rms_height': 'Roughness σ', sump_temperature: 'Sump temperature',
-  sump_temperature_celsius: 'Sump temperature', inlet_temperature_rise_kelvin: 'Rise from the sump to the inlet',
-};
-const UNITS = /_(pascals?|seconds?|kelvin|celsius|metres?|kilograms?|watts|per|cubic|square|squared|pascal)\b.*$/;
-
-/** "Pressure-viscosity coefficient α*" of "lubricant.pressure_viscosity_coefficient_per_pascal". */
-export function inputWords(input: string): string {
-  if (/vogel_viscosity_prefactor.*vogel_temperature_coefficient/.test(input)) return 'Viscosity and its temperature law';
-  return input.split(' ').map((field) => {
-    const known = LABELS.get(field) ?? INPUTS[field];
-    if (known) return known;
-    const words = field.replace(/^\w+\./, '').replace(UNITS, '').replaceAll('_', ' ');
-    return words.charAt(0).toUpperCase() + words.slice(1);
-  }).join(', ');
 }
 
 export const GROUPS: Record<string, string> = {

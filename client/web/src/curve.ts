@@ -1,10 +1,11 @@
 import { get, url } from './api/client';
 import type { BranchEnd, RangeWarning, Simulation } from './api/types';
 import { idOf, revisionIdOf, rounded } from './format';
+import { modelOf, optionWords, type Preset } from './model';
 import { isInRpm, plain, RPM, scaled, shown, sumpText, type Unit } from './units';
 import { CURVE_COLUMNS, QUANTITIES, type Quantity } from './quantities';
 import type { Line, Spec } from './charts/spec';
-import { remarkOf, warningOf, type Remark } from './validity';
+import { levelOf, remarkOf, runsText, type Remark } from './validity';
 
 /** A curve as the service answers it. */
 export interface Curve {
@@ -49,21 +50,19 @@ export async function readCurve(name: string): Promise<Curve> {
 /** The name of a fluid before its remark: "Lubricant 1" of "Lubricant 1: ester-olefin copolymer". */
 export const shortTitle = (title: string): string => title.split(': ')[0]!;
 
-/** Options of the model that a curve has beside the default ones. */
-export const optionsOf = (simulation: Simulation): string[] =>
-  Object.entries(simulation.model_options ?? {}).filter(([, value]) => value === true).map(([name]) => name);
-
-const modelWords = (simulation: Simulation): string =>
-  optionsOf(simulation).map((name) => name.replaceAll('_', ' ')).join(', ');
+/** What the model of a curve leaves out of its preset, or adds. */
+export const optionsOf = (simulation: Simulation): string[] => modelOf(simulation.model_options).options;
+const presetOf = (simulation: Simulation): Preset => modelOf(simulation.model_options).preset;
 
 /** What differs between curves of one fluid: sump, gear set, model, direction of the speed. */
 export function variantOf(simulation: Simulation, all: Simulation[]): string {
   const differs = (key: (each: Simulation) => string) => new Set(all.map(key)).size > 1;
   const sump = (each: Simulation) => sumpText(each.sump_temperature_celsius);
   const gears = (each: Simulation) => idOf(each.gear_set_revision);
-  const model = (each: Simulation) => modelWords(each) || 'full model';
+  const preset = (each: Simulation) => (presetOf(each) === 'PAPER' ? 'model of the paper' : 'recommended model');
+  const model = (each: Simulation) => optionWords(optionsOf(each)) || 'full model';
   const sweep = (each: Simulation) => (each.inefficiency_curve?.direction === 'SWEEP_DIRECTION_DOWN' ? 'falling speed' : 'rising speed');
-  return [sump, gears, model, sweep].filter(differs).map((key) => key(simulation)).join(', ');
+  return [sump, gears, preset, model, sweep].filter(differs).map((key) => key(simulation)).join(', ');
 }
 
 /** The unit of the axis of speeds of a curve: those of its pinion are proportional to those of the vehicle. */
@@ -150,7 +149,7 @@ export function fluidsOf(curves: { simulation: Simulation }[]): string[] {
 /** Fills the area between curves of another model and those of the full model: the difference, drawn. */
 function fillToBase(lines: Line[], curves: Curve[], columns: number): void {
   const scene = ({ simulation }: Curve) =>
-    [simulation.lubricant_revision, simulation.gear_set_revision, simulation.sump_temperature_celsius ?? 40].join(' ');
+    [simulation.lubricant_revision, simulation.gear_set_revision, simulation.sump_temperature_celsius ?? 40, presetOf(simulation)].join(' ');
   curves.forEach((curve, k) => {
     if (optionsOf(curve.simulation).length === 0) return;
     const base = curves.findIndex((each) => optionsOf(each.simulation).length === 0 && scene(each) === scene(curve));
@@ -200,7 +199,7 @@ export function specOf(curves: Curve[], quantity: Quantity, titles: Map<string, 
     levels.push({ value, label: 'half backlash' }, { value: -value, label: 'half backlash, coast side' });
   }
   const has = (level: string) => (curve: Curve, row: number) =>
-    curve.warnings[row]!.some((warning) => warningOf(warning.code ?? '').level === level);
+    curve.warnings[row]!.some((warning) => levelOf(warning) === level);
   return {
     title: quantity.title,
     xLabel: axisLabelOf(curves[0]),
@@ -214,7 +213,7 @@ export function specOf(curves: Curve[], quantity: Quantity, titles: Map<string, 
   };
 }
 
-/** "20 to 70, 80 km/h": runs of neighbours among all speeds. */
+/** "20 to 70, 80 km/h": the speeds at which a row of any curve has a property. */
 function speedsText(curves: Curve[], has: (curve: Curve, row: number) => boolean): string {
   const all = new Set<number>();
   const affected = new Set<number>();
@@ -224,19 +223,9 @@ function speedsText(curves: Curve[], has: (curve: Curve, row: number) => boolean
       if (has(curve, row)) affected.add(speed);
     });
   }
-  if (affected.size === all.size) return 'all speeds';
   const unit = speedUnitOf(curves[0]);
-  const text = (speed: number | undefined) => (unit.factor === 1 ? `${speed}` : rounded(shown(speed!, unit), 1));
-  const runs: number[][] = [];
-  let isOpen = false;
-  for (const speed of [...all].sort((a, b) => a - b)) {
-    if (affected.has(speed)) {
-      if (isOpen) runs.at(-1)!.push(speed);
-      else runs.push([speed]);
-    }
-    isOpen = affected.has(speed);
-  }
-  return `${runs.map((run) => (run.length === 1 ? text(run[0]) : `${text(run[0])} to ${text(run.at(-1))}`)).join(', ')} ${unit.symbol}`;
+  const runs = runsText([...all].sort((a, b) => a - b), (speed) => affected.has(speed), (speed) => (unit.factor === 1 ? `${speed}` : rounded(shown(speed, unit), 1)));
+  return runs === '' ? 'all speeds' : `${runs} ${unit.symbol}`;
 }
 
 /** Warnings of all points and inputs, each once, with the speeds that it holds for. */

@@ -2,17 +2,17 @@ import type { CycleLubricant, CyclePart, CyclePartKind, CyclePlace, EvaluateCycl
 import { tableOf, type Table } from './candidates';
 import { finite } from './components/num';
 import type { Line, Spec } from './charts/spec';
+import { modelBodyOf, modelFlagsOf, modelQueryOf, modelRequestOf, type Model } from './model';
 import { plain, readNumber, shown, watts, type Unit } from './units';
 
 /** What the form of a cycle holds. */
-export interface CycleRequest {
+export interface CycleRequest extends Model {
   fluids: string[]; // ids, with or without "@revision"; others are compared with the first
   isOwn: boolean; // a dropped cycle in place of the NEDC
   sump: number; // [C]
   gearSet: string; // ids; "": those of the paper
   surface: string;
   vehicle: string;
-  options: string[];
   isSheared: boolean;
 }
 
@@ -23,13 +23,13 @@ const words = (text: string | null): string[] => (text ?? '').split(',').filter(
 export const cycleRequestOf = (query: URLSearchParams): CycleRequest => ({
   fluids: words(query.get('f')), isOwn: query.get('cycle') === 'own', sump: query.has('sump') ? Number(query.get('sump')) : USUAL_SUMP,
   gearSet: query.get('gear') ?? '', surface: query.get('surface') ?? '', vehicle: query.get('vehicle') ?? '',
-  options: words(query.get('opt')), isSheared: query.get('sheared') === '1',
+  ...modelRequestOf(query), isSheared: query.get('sheared') === '1',
 });
 
 export const cycleQueryOf = (request: CycleRequest): Record<string, string | undefined> => ({
   f: request.fluids.join(',') || undefined, cycle: request.isOwn ? 'own' : undefined, sump: request.sump === USUAL_SUMP ? undefined : String(request.sump),
   gear: request.gearSet || undefined, surface: request.surface || undefined, vehicle: request.vehicle || undefined,
-  opt: request.options.join(',') || undefined, sheared: request.isSheared ? '1' : undefined,
+  ...modelQueryOf(request), sheared: request.isSheared ? '1' : undefined,
 });
 
 export const cycleBodyOf = (request: CycleRequest, places: CyclePlace[]): EvaluateCycleRequest => ({
@@ -37,7 +37,7 @@ export const cycleBodyOf = (request: CycleRequest, places: CyclePlace[]): Evalua
   ...(request.gearSet ? { gear_set: `gearSets/${request.gearSet}` } : {}),
   ...(request.surface ? { surface: `surfaces/${request.surface}` } : {}),
   ...(request.vehicle ? { vehicle: `vehicles/${request.vehicle}` } : {}),
-  ...(request.options.length > 0 ? { model_options: Object.fromEntries(request.options.map((each) => [each, true])) } : {}),
+  ...modelBodyOf(request),
   sump_temperature_celsius: request.sump, sheared_lubricant: request.isSheared,
   ...(request.isOwn ? { places } : { named_cycle: 'NAMED_CYCLE_NEDC' as const }),
 });
@@ -48,7 +48,7 @@ export const cycleCommandOf = (request: CycleRequest, file: string, project: str
   ...(request.isOwn ? ['--cycle', `'${file}'`] : []), '--sump', request.sump,
   ...(request.gearSet ? ['--gear-set', request.gearSet] : []), ...(request.surface ? ['--surface', request.surface] : []),
   ...(request.vehicle ? ['--vehicle', request.vehicle] : []), ...(request.isSheared ? ['--condition', 'sheared'] : []),
-  ...request.options.map((each) => `--${each.replaceAll('_', '-')}`),
+  ...modelFlagsOf(request),
 ].join(' ');
 
 /** The columns of a file of a cycle, as the command line has them; further columns are not used. */

@@ -22,9 +22,6 @@ export function rounded(value: number | null | undefined, error?: number): strin
   return Number(text) === 0 ? text.replace('-', '') : text.replace('-', '−');
 }
 
-/** A zero with as many places as its error has. */
-export const zero = (error: number): string => (0).toFixed(Math.max(0, Math.min(placesOf(error), MOST_FIGURES - 1)));
-
 /** "2 min ago". */
 export function ago(time: string | undefined, now = Date.now()): string {
   if (!time) return '';

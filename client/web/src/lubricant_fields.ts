@@ -22,6 +22,12 @@ export const DATA_SHEET: Field[] = [
   measured('sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second', 'After shear, at 100 °C'),
 ];
 
+/** The boundary friction that additives bring to any surface; empty: that of the surface. */
+export const BOUNDARY: Field[] = [
+  parameter('asperity_friction_coefficient', 'Boundary friction coefficient ζ'),
+  parameter('tribofilm_shear_strength_pascals', 'Shear strength of the tribofilm', scaled('MPa', 1e-6)),
+];
+
 export const PARAMETERS: Field[] = [
   parameter('pressure_viscosity_coefficient_per_pascal', 'Pressure-viscosity coefficient α*', perPascal),
   parameter('pressure_viscosity_temperature_kelvin', 'Temperature of α*', kelvin),
@@ -39,7 +45,7 @@ export const PARAMETERS: Field[] = [
   parameter('density_slope_kilograms_per_cubic_metre_kelvin', 'Slope of the density'),
 ];
 
-/** Numbers of data sheets that the model does not use. */
+/** Limits of data sheets: below its pour point an oil is refused; the model does not use the flash point. */
 export const DOCUMENTED: Field[] = [
   parameter('flash_point_celsius', 'Flash point'),
   parameter('pour_point_celsius', 'Pour point'),
@@ -58,7 +64,7 @@ export const PRESSURE_LAW: Field[] = [
 ];
 
 /** All numbers of a lubricant that pages show. */
-export const ALL_FIELDS: Field[] = [...DATA_SHEET, ...DOCUMENTED, ...PARAMETERS, ...PRESSURE_LAW];
+export const ALL_FIELDS: Field[] = [...DATA_SHEET, ...DOCUMENTED, ...BOUNDARY, ...PARAMETERS, ...PRESSURE_LAW];
 
 export const BASE_OILS: [string, string][] = [
   ['BASE_OIL_CLASS_UNSPECIFIED', 'not stated'],
@@ -81,7 +87,7 @@ export function valueOf(lubricant: Lubricant, field: Field): number | undefined 
 export const constraintOf = (field: Field, constraints: Constraint[] | undefined): Constraint | undefined =>
   constraints?.find((each) => each.message === field.message && each.field === field.field);
 
-const UNITS: Record<string, string> = { C: '°C', 'mm2/s': 'mm²/s', 'kg/m3': 'kg/m³', 'kg/(m3 K)': 'kg/(m³ K)', '1/m2': '1/m²' };
+const UNITS: Record<string, string> = { C: '°C', degrees: '°', 'mm2/s': 'mm²/s', 'kg/m3': 'kg/m³', 'kg/(m3 K)': 'kg/(m³ K)', '1/m2': '1/m²' };
 /** A unit of the service with raised digits. */
 export const symbolOf = (unit: string): string => UNITS[unit] ?? unit;
 export const unitOf = (field: Field, constraint: Constraint | undefined): Unit => field.unit ?? plain(symbolOf(constraint?.unit ?? ''));

@@ -1,26 +1,18 @@
 import type { InefficiencyCurveStudy, Simulation } from './api/types';
-import { optionsOf } from './curve';
 import { revisionIdOf } from './format';
+import { modelBodyOf, modelFlagsOf, modelOf, modelQueryOf, modelRequestOf, type Model } from './model';
 
 /** What the form of the curves holds. */
-export interface CurveRequest {
+export interface CurveRequest extends Model {
   fluids: string[]; // ids, with or without "@revision"
   sumps: number[]; // [C]
   gearSet: string; // id; "": the reference axle
   first: number; // [km/h]
   last: number; // [km/h]
   step: number; // [km/h]
-  options: string[]; // of ModelOptions, those that are true
 }
 
-export const DEFAULTS: CurveRequest = { fluids: [], sumps: [40], gearSet: '', first: 20, last: 140, step: 5, options: [] };
-
-export const OPTIONS: [string, string][] = [
-  ['isothermal', 'Isothermal: contact as warm as its inlet'],
-  ['newtonian', 'Newtonian: no shear thinning'],
-  ['no_limiting_shear_stress', 'No limiting shear stress'],
-  ['no_boundary_friction', 'No boundary friction'],
-];
+export const DEFAULTS: CurveRequest = { fluids: [], sumps: [40], gearSet: '', first: 20, last: 140, step: 5, preset: 'RECOMMENDED', options: [] };
 
 const numbers = (text: string | null): number[] =>
   (text ?? '').split(',').filter((word) => word.trim() !== '').map(Number);
@@ -34,7 +26,7 @@ export function requestOf(query: URLSearchParams): CurveRequest {
     first: number('from', DEFAULTS.first),
     last: number('to', DEFAULTS.last),
     step: number('step', DEFAULTS.step),
-    options: (query.get('opt') ?? '').split(',').filter((each) => each !== ''),
+    ...modelRequestOf(query),
   };
 }
 
@@ -48,7 +40,7 @@ export function queryOf(request: CurveRequest): Record<string, string | undefine
     from: unless(request.first, DEFAULTS.first),
     to: unless(request.last, DEFAULTS.last),
     step: unless(request.step, DEFAULTS.step),
-    opt: request.options.join(',') || undefined,
+    ...modelQueryOf(request),
   };
 }
 
@@ -63,7 +55,7 @@ export function requestOfSimulations(simulations: Simulation[]): CurveRequest {
     first: study.first_speed_kilometres_per_hour ?? DEFAULTS.first,
     last: study.last_speed_kilometres_per_hour ?? DEFAULTS.last,
     step: study.speed_step_kilometres_per_hour ?? DEFAULTS.step,
-    options: optionsOf(first),
+    ...modelOf(first.model_options),
   };
 }
 
@@ -74,8 +66,7 @@ export function bodiesOf(request: CurveRequest): Simulation[] {
       lubricant: `lubricants/${fluid}`,
       ...(request.gearSet ? { gear_set: `gearSets/${request.gearSet}` } : {}),
       sump_temperature_celsius: sump,
-      ...(request.options.length > 0
-        ? { model_options: Object.fromEntries(request.options.map((each) => [each, true])) } : {}),
+      ...modelBodyOf(request),
       inefficiency_curve: {
         first_speed_kilometres_per_hour: request.first,
         last_speed_kilometres_per_hour: request.last,
@@ -93,7 +84,7 @@ export function commandsOf(request: CurveRequest, project: string): string[] {
       '--first-speed-kilometres-per-hour', String(request.first),
       '--last-speed-kilometres-per-hour', String(request.last),
       '--speed-step-kilometres-per-hour', String(request.step),
-      ...request.options.map((each) => `--${each.replaceAll('_', '-')}`)].join(' '));
+      ...modelFlagsOf(request)].join(' '));
 }
 
 /** All inputs of a simulation but what it computes, with the revisions that it used. */

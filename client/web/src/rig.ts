@@ -1,12 +1,14 @@
 import type { EvaluateRigRequest, EvaluateRigResponse, RigBody, RigCondition } from './api/types';
 import type { Line, Spec } from './charts/spec';
-import { finite } from './components/num';
+import { finite, isUncertain, type Figure } from './components/num';
+import { modelBodyOf, modelFlagsOf, modelQueryOf, modelRequestOf, optionWords, type Model } from './model';
 import { celsius, kelvin, metres, pascals, plain, scaled, shown, written, type Unit } from './units';
+import { levelOf, remarksAt, runsText, type Remark } from './validity';
 
 export type RigKind = 'traction' | 'film' | 'stribeck';
 
 /** What the form of a rig holds. Lists have a curve for each of their values. */
-export interface RigRequest {
+export interface RigRequest extends Model {
   kind: RigKind;
   fluids: string[]; // ids, with or without "@revision"
   loads: number[]; // [N]
@@ -17,7 +19,6 @@ export interface RigRequest {
   disc: 'steel' | 'glass';
   surface: string; // id; "": smooth specimens
   roughness: number; // sigma_G [nm]; 0: that of the surface
-  options: string[];
   hasBands: boolean; // of the uncertainty of the inputs
 }
 
@@ -32,7 +33,7 @@ const speedsFrom = (first: number): number[] => {
 };
 
 /** A kind of rig: what it varies, what it shows first, and its machine if nobody states another. */
-export const RIGS: Record<RigKind, { label: string; about: string; swept: number[]; x: { label: string; isLogarithmic: boolean }; first: string; usual: Omit<RigRequest, 'kind' | 'fluids' | 'hasBands'> }> = {
+export const RIGS: Record<RigKind, { label: string; about: string; swept: number[]; x: { label: string; isLogarithmic: boolean }; first: string; usual: Omit<RigRequest, 'kind' | 'fluids' | 'hasBands' | 'preset'> }> = {
   traction: {
     label: 'Traction', about: 'Friction of a ball on a disc against the slide-roll ratio',
     swept: [0, 0.25, 0.5, 1, 1.5, 2, 3, 4, 5, 7, 10, 15, 20, 25, 30, 35, 40, 45, 50],
@@ -87,7 +88,7 @@ export function rigRequestOf(query: URLSearchParams): RigRequest {
     disc: query.get('disc') === 'glass' ? 'glass' : query.get('disc') === 'steel' ? 'steel' : usual.disc,
     surface: query.has('surface') ? (query.get('surface') === 'smooth' ? '' : query.get('surface')!) : usual.surface,
     roughness: query.has('rough') ? Number(query.get('rough')) : usual.roughness,
-    options: words(query.get('opt')), hasBands: query.get('u') !== '0',
+    ...modelRequestOf(query), hasBands: query.get('u') !== '0',
   };
 }
 
@@ -99,7 +100,7 @@ export function rigQueryOf(request: RigRequest): Record<string, string | undefin
     ...Object.fromEntries(LISTS.map((key) => [NUMBERS[key], unless(request[key].join(','), usual[key].join(','))])),
     radius: unless(String(request.radius), String(usual.radius)), disc: unless(request.disc, usual.disc),
     surface: unless(request.surface || 'smooth', usual.surface || 'smooth'), rough: unless(String(request.roughness), String(usual.roughness)),
-    opt: request.options.join(',') || undefined, u: request.hasBands ? undefined : '0',
+    ...modelQueryOf(request), u: request.hasBands ? undefined : '0',
   };
 }
 
@@ -138,14 +139,14 @@ export interface RigCall {
 export function callsOf(request: RigRequest): RigCall[] {
   const models = [[], ...(request.options.length > 0 ? [request.options] : [])];
   return request.fluids.flatMap((fluid) => models.map((options) => ({
-    fluid, model: models.length === 1 ? '' : options.map((each) => each.replaceAll('_', ' ')).join(', ') || 'full model',
+    fluid, model: models.length === 1 ? '' : optionWords(options) || 'full model',
     body: {
       lubricant: `lubricants/${fluid}`,
       ...(request.surface ? { surface: `surfaces/${request.surface}` } : {}),
       ...(request.surface && request.roughness > 0 ? { composite_rms_height_metres: Number((1e-9 * request.roughness).toPrecision(12)) } : {}),
       radius_x_metres: Number((1e-3 * request.radius).toPrecision(12)),
       ...(request.disc === 'glass' ? { body_2: GLASS } : {}),
-      ...(options.length > 0 ? { model_options: Object.fromEntries(options.map((each) => [each, true])) } : {}),
+      ...modelBodyOf({ preset: request.preset, options }),
       ...(request.hasBands ? { draws: DRAWS } : {}),
       conditions: settingsOf(request).flatMap((setting) => RIGS[request.kind].swept.map((swept) => conditionOf(setting, swept))),
     },
@@ -181,19 +182,35 @@ export function rigCurvesOf(request: RigRequest, answers: { call: RigCall; answe
 export const rigValue = (curve: RigCurve, quantity: RigQuantity, row: number): number | null =>
   finite((curve.answer[quantity.column] as (number | string)[] | undefined)?.[curve.firstRow + row]);
 
-export interface RigBand {
-  error: number; // standard uncertainty
-  low: number; // ends of the 95 % interval
-  high: number;
-}
-
 /** What the uncertainty of the inputs makes of a figure at a row; null if it does not move the figure, or the model refused too many draws. */
-export function rigBand(curve: RigCurve, quantity: RigQuantity, row: number): RigBand | null {
+export function rigBand(curve: RigCurve, quantity: RigQuantity, row: number): Figure | null {
   const band = curve.answer.uncertainties?.find((each) => each.figure === quantity.column);
   const at = (column?: (number | string)[]) => finite(column?.[curve.firstRow + row]);
-  const [error, low, high] = [at(band?.standard_uncertainty), at(band?.interval_minimum), at(band?.interval_maximum)];
-  return error === null || low === null || high === null ? null : { error, low, high };
+  const figure = {
+    value: rigValue(curve, quantity, row), standard_uncertainty: at(band?.standard_uncertainty),
+    interval_minimum: at(band?.interval_minimum), interval_maximum: at(band?.interval_maximum),
+  };
+  return isUncertain(figure) && figure.interval_minimum !== null && figure.interval_maximum !== null ? figure : null;
 }
+
+/** The warnings of rows of curves, each with the curves and places of the axis that it holds for. */
+export const rigRemarks = (request: RigRequest, curves: RigCurve[], titleOf: (fluid: string) => string): Remark[] => {
+  const symbol = RIGS[request.kind].x.label.split(', ')[1]!;
+  return remarksAt(curves.flatMap((curve) => (curve.answer.range_warnings ?? []).flatMap((warning) => {
+    const rows = new Set(warning.rows ?? []);
+    if (!curve.x.some((_, row) => rows.has(curve.firstRow + row))) return [];
+    const runs = runsText(curve.x, (_, row) => rows.has(curve.firstRow + row), (x) => `${x}`);
+    return [{ warning, where: `${[titleOf(curve.fluid), curve.label].filter((each) => each !== '').join(', ')}${runs && ` ${runs} ${symbol}`}` }];
+  })));
+};
+
+/** The codes of the warnings of a row, with blanks between them. */
+export const codesAt = (curve: RigCurve, row: number): string =>
+  (curve.answer.range_warnings ?? []).filter((each) => (each.rows ?? []).includes(curve.firstRow + row)).map((each) => each.code).join(' ');
+
+/** Whether a warning of a row forbids to rank by it. */
+const isWithheld = (curve: RigCurve, row: number): boolean =>
+  (curve.answer.range_warnings ?? []).some((each) => levelOf(each) === 'outside' && (each.rows ?? []).includes(curve.firstRow + row));
 
 export function rigSpec(request: RigRequest, curves: RigCurve[], quantity: RigQuantity, titleOf: (fluid: string) => string): Spec {
   const rig = RIGS[request.kind];
@@ -206,7 +223,7 @@ export function rigSpec(request: RigRequest, curves: RigCurve[], quantity: RigQu
       const value = rigValue(curve, quantity, row);
       return value === null || (isLogarithmic && value <= 0) ? null : shown(value, quantity.unit);
     }),
-    hollow: curve.x.map(() => false),
+    hollow: curve.x.map((_, row) => isWithheld(curve, row)),
     ...endsOf(curve, quantity, isLogarithmic),
   }));
   return {
@@ -220,8 +237,9 @@ export function rigSpec(request: RigRequest, curves: RigCurve[], quantity: RigQu
 function endsOf(curve: RigCurve, quantity: RigQuantity, isLogarithmic: boolean): Pick<Line, 'low' | 'high'> {
   const bands = curve.x.map((_, row) => rigBand(curve, quantity, row));
   if (bands.every((band) => band === null)) return {};
-  const end = (read: (band: RigBand) => number) => bands.map((band) => (band === null || (isLogarithmic && band.low <= 0) ? null : shown(read(band), quantity.unit)));
-  return { low: end((band) => band.low), high: end((band) => band.high) };
+  const end = (name: 'interval_minimum' | 'interval_maximum') => bands.map((band) =>
+    (band === null || (isLogarithmic && (band.interval_minimum as number) <= 0) ? null : shown(band[name] as number, quantity.unit)));
+  return { low: end('interval_minimum'), high: end('interval_maximum') };
 }
 
 /** Commands that compute the same figures. */
@@ -235,7 +253,7 @@ export function rigCommandsOf(request: RigRequest, project: string): string[] {
     '--radius', `${request.radius}mm`, '--disc', request.disc,
     ...(request.surface === usual.surface ? [] : ['--surface', request.surface || 'smooth']),
     ...(request.roughness === (request.surface === usual.surface ? usual.roughness : 0) ? [] : ['--roughness', `${request.roughness}nm`]),
-    ...request.options.map((each) => `--${each.replaceAll('_', '-')}`),
+    ...modelFlagsOf(request),
     ...(request.hasBands ? [] : ['--draws', '0']),
   ].join(' ')];
 }

@@ -3,7 +3,7 @@ import type { ComparedPoint, ComparePointsRequest, ComparePointsResponse, Simula
 import { change, url } from './api/client';
 import type { Line, Spec } from './charts/spec';
 import { differenceSpec } from './comparison';
-import { finite } from './components/num';
+import { finite, isUncertain } from './components/num';
 import { axisLabelOf, axisOf, shortTitle, variantOf, type Curve } from './curve';
 import { idOf, revisionIdOf } from './format';
 import { shown, type Unit } from './units';
@@ -80,14 +80,19 @@ const FIGURES: Record<string, (point: ComparedPoint) => UncertainFigure | undefi
 export const needsContactFigures = (columns: string[]): boolean =>
   columns.some((each) => each === 'minimum_film_ratio' || each === 'maximum_contact_temperature_kelvin');
 
-/** The figure of a column of a curve at one of its rows, with its uncertainty. */
+/** The revisions of fluids of which nobody stated an uncertainty: their figures have no interval. */
+export const unstatedOf = (groups: ComparedGroup[] | undefined): string[] =>
+  [...new Set((groups ?? []).flatMap((group) => (group.answer.lubricants ?? []).filter((each) => !each.uncertainty_stated).map((each) => each.lubricant_revision!)))];
+
+/** The figure of a column of a curve at one of its rows, with its uncertainty if one is stated. */
 export function figureOf(groups: ComparedGroup[] | undefined, simulation: Simulation, column: string, row: number): UncertainFigure | undefined {
   const read = FIGURES[column];
   if (!read) return undefined;
   for (const group of groups ?? []) {
     const k = group.curves.findIndex((each) => each.simulation.name === simulation.name);
-    const point = k < 0 ? undefined : group.answer.lubricants?.[k]?.points?.[row];
-    if (point && !point.refusal_reason) return read(point);
+    const fluid = k < 0 ? undefined : group.answer.lubricants?.[k];
+    const point = fluid?.points?.[row];
+    if (point && !point.refusal_reason) return fluid!.uncertainty_stated ? read(point) : { solver_error: read(point)?.solver_error };
   }
   return undefined;
 }
@@ -99,7 +104,7 @@ export function withIntervals(line: Line, curve: Curve, column: string, unit: Un
   const edge = (read: (figure: UncertainFigure) => number | undefined) => line.x.map((speed, i) => {
     const row = rows.get(speed);
     const figure = row === undefined || line.y[i] === null ? undefined : figureOf(groups, curve.simulation, column, row);
-    const value = figure && (finite(figure.standard_uncertainty) ?? 0) > 0 ? finite(read(figure)) : null;
+    const value = figure && isUncertain(figure) ? finite(read(figure)) : null;
     if (value !== null) hasOne = true;
     return value === null ? null : shown(value, unit);
   });
@@ -122,8 +127,7 @@ export function differencesOf(groups: ComparedGroup[] | undefined, fluids: strin
     spec.lines.forEach((line) => {
       line.variant = k;
       if (variant !== '') line.label += `, ${variant}`;
-      // An interval of the solver alone is thinner than the line.
-      if (line.low?.every((low, i) => low === null || Math.abs(line.high![i]! - low) < 0.01 * Math.abs(line.y[i]!))) delete line.low;
+      if (line.low?.every((low) => low === null)) delete line.low;
     });
     return spec;
   });

@@ -1,7 +1,16 @@
-import type { CharacterisationWarning, RangeWarning } from './api/types';
+import type { WarningLevel } from './api/types';
 
 /** How far a result may be relied on: a note restricts nothing, `outside` forbids to rank by it. */
 export type Level = 'note' | 'caution' | 'outside';
+
+/** A warning of the service: of points, rows, candidates or inputs. */
+export interface Warning {
+  code?: string;
+  summary?: string;
+  level?: WarningLevel;
+  message?: string;
+  sentence?: string; // of a characterisation, in place of the message
+}
 
 /** A sentence about the validity of a result. */
 export interface Remark {
@@ -12,41 +21,52 @@ export interface Remark {
   message: string; // of the service
 }
 
-const WARNINGS: Record<string, { words: string; level: Level }> = {
-  COLD_INLET: { words: 'cold inlet: do not rank oils here', level: 'outside' },
-  FILM_RATIO: { words: 'film thinner than the asperity model holds for', level: 'caution' },
-  LIMITING_STRESS: { words: 'most of the loaded area at the limiting shear stress', level: 'caution' },
-  PRESSURE: { words: 'pressure outside the range in which friction was measured', level: 'caution' },
-  RADIUS_RATIO: { words: 'contact ellipse slimmer than the fits hold for', level: 'caution' },
-  ROUGHNESS_PRODUCT: { words: 'roughness outside the range of the asperity model', level: 'caution' },
-  VISCOSITY_TEMPERATURE: { words: 'temperature outside the range in which viscosity was measured', level: 'caution' },
-  ISOTHERMAL: { words: 'isothermal model', level: 'note' },
-  NOT_SETTLED: { words: 'no steady period: averages over a record', level: 'note' },
-  PERIOD: { words: 'response with a period of several mesh cycles', level: 'note' },
-  QUASI_STATIC: { words: 'quasi-static model', level: 'note' },
-  PARAMETER_ESTIMATED: { words: 'some parameters are estimated', level: 'note' },
-  RESPONSES_COEXIST: { words: 'another response at the same point', level: 'caution' },
-  RATTLES: { words: 'rattle: averages with a statistical error', level: 'caution' },
-  FLANKS_TAP: { words: 'flanks tap each other under hardly any load', level: 'caution' },
-  BARELY_ATTRACTS: { words: 'response that hardly attracts', level: 'note' },
-  NO_SENSITIVITIES: { words: 'no sensitivities', level: 'note' },
-};
+const LEVELS: Partial<Record<WarningLevel, Level>> = { WARNING_LEVEL_CAUTION: 'caution', WARNING_LEVEL_WITHHOLDS_VERDICT: 'outside' };
 
-export function warningOf(code: string): { words: string; level: Level } {
-  const words = code.toLowerCase().replaceAll('_', ' ');
-  return WARNINGS[code] ?? { words, level: /_(ESTIMATED|ASSUMED|UNSPECIFIED|UNUSED|UNDEFINED)$/.test(code) ? 'note' : 'caution' };
-}
+export const levelOf = (warning: Warning): Level => LEVELS[warning.level!] ?? 'note';
 
-export const remarkOf = (warning: RangeWarning | CharacterisationWarning, where = ''): Remark => ({
-  code: warning.code ?? '', where, ...warningOf(warning.code ?? ''),
-  message: ('sentence' in warning ? warning.sentence : (warning as RangeWarning).message) ?? '',
+export const remarkOf = (warning: Warning, where = ''): Remark => ({
+  code: warning.code ?? '', where, level: levelOf(warning),
+  words: warning.summary || (warning.code ?? '').toLowerCase().replaceAll('_', ' '), message: warning.message ?? warning.sentence ?? '',
 });
 
-/** Warnings as remarks, one for each code; estimates of parameters have one sentence each. */
-export function remarksOnce(warnings: RangeWarning[]): Remark[] {
-  const all = new Map(warnings.map((each) => [each.code === 'PARAMETER_ESTIMATED' ? each.message : each.code, each] as const));
-  return [...all.values()].map((each) => remarkOf(each));
+/** A warning and for what it holds; empty: for all. */
+export interface Placed {
+  warning: Warning;
+  where: string;
 }
+
+/** Warnings as remarks, one for each code with all places that it holds for; estimates of parameters have one sentence each. */
+export function remarksAt(placed: Placed[]): Remark[] {
+  const all = new Map<string, { warning: Warning; places: Set<string> }>();
+  for (const { warning, where } of placed) {
+    const key = warning.code === 'PARAMETER_ESTIMATED' ? warning.message! : warning.code!;
+    const known = all.get(key) ?? { warning, places: new Set() };
+    all.set(key, known);
+    if (where !== '') known.places.add(where);
+  }
+  return [...all.values()].map(({ warning, places }) => remarkOf(warning, [...places].join('; ')));
+}
+
+export const remarksOnce = (warnings: Warning[]): Remark[] => remarksAt(warnings.map((warning) => ({ warning, where: '' })));
+
+/** "20 to 70, 80": runs of neighbours among places in ascending order; empty: all of them. */
+export function runsText(places: number[], isAffected: (place: number, k: number) => boolean, text: (place: number) => string): string {
+  const runs: number[][] = [];
+  let isOpen = false;
+  places.forEach((place, k) => {
+    const isIn = isAffected(place, k);
+    if (isIn && isOpen) runs.at(-1)!.push(place);
+    else if (isIn) runs.push([place]);
+    isOpen = isIn;
+  });
+  if (runs.length === 1 && runs[0]!.length === places.length) return '';
+  return runs.map((run) => (run.length === 1 ? text(run[0]!) : `${text(run[0]!)} to ${text(run.at(-1)!)}`)).join(', ');
+}
+
+/** Remarks in a line each, for the foot of a figure or table. */
+export const remarkLines = (remarks: Remark[]): string[] =>
+  remarks.map((each) => `${each.words}${each.where && `, at ${each.where}`}: ${each.message} [${each.code}]`);
 
 /** The level that decides for a result with these remarks. */
 export const worstOf = (remarks: Remark[]): 'ok' | 'caution' | 'outside' =>

@@ -31,6 +31,7 @@ test('the NEDC is added up for fluids, with both errors, over time and by its pa
     lubricants: ['lubricants/paper-fluid-1', 'lubricants/paper-fluid-2'], named_cycle: 'NAMED_CYCLE_NEDC', sump_temperature_celsius: 40,
   });
   const values = (row) => total().nth(row).locator('[data-value]').evaluateAll((all) => all.map((each) => Number(each.dataset.value)));
+  await page.getByText(answer.not_included).waitFor();
   for (const row of [0, 1]) {
     const fluid = answer.lubricants[row];
     assert.deepEqual(await values(row), [

@@ -77,6 +77,17 @@ test('a fluid whose viscosity was measured under pressure is entered with the la
   assert.equal(law.expansivity_exponent, -0.5);
 });
 
+test('an oil has the boundary friction that its additives bring', async () => {
+  await page.goto(`${server.address}/fluids/measured-oil/edit`);
+  await page.getByLabel(/Boundary friction coefficient/).fill('0.09');
+  await page.getByLabel(/Shear strength of the tribofilm/).fill('3');
+  await page.getByRole('button', { name: /Save/ }).click();
+  await page.waitForURL(/\/fluids\/measured-oil$/);
+  const saved = await server.call('GET', '/v1/lubricants/measured-oil');
+  assert.equal(saved.asperity_friction_coefficient, 0.09);
+  assert.equal(saved.tribofilm_shear_strength_pascals, 3e6);
+});
+
 test('a dropped table shows what is wrong at its row', async () => {
   await page.goto(`${server.address}/fluids/new`);
   await page.getByLabel('Id').fill('dropped');

@@ -47,13 +47,20 @@ test('the uncertainty of a fluid is a band of its curve, and can be switched off
   await output(TRIBODYN, ['--server', `unix:${server.folder}/socket`, 'lubricants', 'create', 'sheet-oil', '--kv40', '103', '--kv100', '15.1', '--density15', '868', '--base-oil-class', 'pao']);
   await page.goto(`${server.address}/rigs?kind=film&f=sheet-oil`);
   await page.getByText('holds the curve with 95').waitFor();
-  await page.locator('.read-out tbody', { hasText: '±' }).waitFor();
+  await page.locator('.read-out tbody', { hasText: / to / }).waitFor();
   assert.deepEqual(await foreignNumbers(page), []);
   await page.getByLabel('Uncertainty of the inputs').uncheck();
   await page.waitForURL(/u=0$/);
   await page.getByText('holds the curve with 95').waitFor({ state: 'detached' });
   await page.locator('.read-out tbody tr').first().waitFor();
-  assert.ok(!(await page.locator('.read-out tbody').textContent()).includes('±'));
+  assert.ok(!(await page.locator('.read-out tbody').textContent()).includes(' to '));
+});
+
+test('the warnings of a rig stand with the places that they hold for', async () => {
+  await page.goto(`${server.address}/rigs?kind=stribeck&f=paper-fluid-1`);
+  const remark = page.locator('.validity li', { hasText: 'FILM_RATIO' }).first();
+  await remark.waitFor({ state: 'attached' });
+  assert.match(await remark.textContent(), /Lubricant 1 [\d.]+ to [\d.]+ m\/s/);
 });
 
 test('a mistake in the setting of a rig is named at its field', async () => {

@@ -84,7 +84,7 @@ const VIEWS = [
   ['campaign-new-design', '/campaigns/new?from=design', '.design'],
   ['campaign-new-fluids', '/campaigns/new?from=fluids&of=my-oil,their-oil', '.estimate strong'],
   ['campaign-append', '/campaigns/1/append', '.drop'],
-  ['campaign-ranking', '/campaigns/1?du=3', '.ranking tbody tr'],
+  ['campaign-ranking', '/campaigns/1', '.ranking tbody tr'],
   ['campaign-pareto', '/campaigns/1?view=pareto', '.scatter canvas'],
   ['campaign-effects', '/campaigns/1?view=effects', '.bars'],
   ['campaign', '/campaigns/1?view=rows&order=mesh_loss_power_watts&c=7', '.rows tbody tr'],

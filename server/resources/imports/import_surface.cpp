@@ -10,6 +10,7 @@
 #include "core/refusal.h"
 #include "core/surface/measured_surface.h"
 #include "server/contract/constraints.h"
+#include "server/mapping/from_core.h"
 #include "server/resources/accept_resource.h"
 #include "server/resources/imports/read_profiles.h"
 #include "server/resources/provenance.h"
@@ -91,9 +92,7 @@ std::vector<v1::RangeWarning> surface_warnings(const v1::Surface& surface) {
   std::vector<v1::RangeWarning> out;
   const auto add = [&out](const char* code, const std::string& sentence) {
     if (sentence.empty()) return;
-    v1::RangeWarning& warning = out.emplace_back();
-    warning.set_code(code);
-    warning.set_message(sentence);
+    out.push_back(to_message(RangeWarning{code, sentence}));
   };
   const v1::ParameterProvenance* known = find_provenance(surface.provenance(), kFromProfiles[0]);
   if (known == nullptr || !known->computed()) return out;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <utility>
@@ -101,6 +102,53 @@ void check_spacing(const CsvTable& table, const CsvColumn& column, const std::ve
   }
 }
 
+struct LengthUnit {
+  double metres;
+  std::string_view symbol;
+};
+constexpr LengthUnit kLengthUnits[] = {{1, "m"}, {1e-3, "mm"}, {1e-6, "um"}, {1e-9, "nm"}};
+
+/// Returns a question for another unit of the heights, or of the positions, with which the profile
+/// would be that of a usual flank; empty if there is none.
+std::string meant_unit_text(double height, double slope, const CsvColumn& heights,
+                            const CsvColumn& positions) {
+  const auto is_usual = [](double rms_height, double rms_slope) {
+    return rms_height >= 1e-8 && rms_height <= 2e-5 && rms_slope >= 5e-3 && rms_slope <= 1;
+  };
+  for (const CsvColumn* column : {&heights, &positions}) {
+    const double stated = column->form.factor;
+    const auto* const written =
+        std::find_if(std::begin(kLengthUnits), std::end(kLengthUnits),
+                     [stated](const LengthUnit& unit) { return unit.metres == stated; });
+    for (const LengthUnit& unit : kLengthUnits) {
+      const double factor = unit.metres / stated;
+      const double meant_height = column == &heights ? height * factor : height;
+      const double meant_slope = column == &heights ? slope * factor : slope / factor;
+      if (!is_usual(meant_height, meant_slope)) continue;
+      return fmt::format(
+          "; did you mean {}s in {}, not in {} (a factor of {:g})? The rms height would be {:.3g} "
+          "um and the rms slope {:.3g}",
+          column->form.quantity, unit.symbol, written->symbol, std::max(factor, 1 / factor),
+          1e6 * meant_height, meant_slope);
+    }
+  }
+  return "";
+}
+
+/// Adds a violation if no machined surface has such a profile.
+void check_machined(const SpectralMoments& moments, const CsvColumn& heights,
+                    const CsvColumn& positions, const std::string& name, Violations& violations) {
+  const double height = std::sqrt(moments.m0), slope = std::sqrt(moments.m2);
+  const bool slope_is_usual = slope >= kLeastRmsSlope && slope <= kMostRmsSlope;
+  if (slope_is_usual && height >= kLeastRmsHeight && height <= kMostRmsHeight) return;
+  violations.add(
+      join_path(name, slope_is_usual ? "mean_square_height_square_metres" : "mean_square_slope"),
+      fmt::format("rms height {:.3g} um and rms slope {:.3g}: no machined surface; allowed: {:g} "
+                  "to {:g} um and {:g} to {:g}{}",
+                  1e6 * height, slope, 1e6 * kLeastRmsHeight, 1e6 * kMostRmsHeight, kLeastRmsSlope,
+                  kMostRmsSlope, meant_unit_text(height, slope, heights, positions)));
+}
+
 /// Returns a profile with its moments, or nullopt with all violations if it is not usable.
 std::optional<ReadProfile> measure(const v1::SurfaceProfile& profile, v1::Levelling levelling,
                                    const ProfileBand& band, const std::string& name,
@@ -149,7 +197,8 @@ std::optional<ReadProfile> measure(const v1::SurfaceProfile& profile, v1::Levell
     out.set_profile_sha256(sha256(profile.csv()));
     out.set_short_wave_cut_off_metres(band.shortest);
     out.set_long_wave_cut_off_metres(band.longest);
-    check_message(out, name, violations);
+    check_machined(moments, *height, *position, name, violations);
+    if (violations.size() == before) check_message(out, name, violations);
     return read;
   } catch (const Refusal& refusal) {
     violations.add(name, refusal.what());

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Installs the Python client into a fresh virtual environment, as its README says, and tests it
 # against a real tribodynd.
-# usage: run.sh TRIBODYND FOLDER [option of pytest...]
+# usage: run.sh TRIBODYND TRIBODYN FOLDER [option of pytest...]
 #   FOLDER: where the environment and the caches go
 set -euo pipefail
-tribodynd=$1 folder=$2
-shift 2
+tribodynd=$1 tribodyn=$2 folder=$3
+shift 3
 tests=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 tree=$(cd "$tests/../../.." && pwd)
 
@@ -19,5 +19,5 @@ rm -rf "$folder/venv"
 /usr/bin/python3 -m venv --system-site-packages --without-pip "$folder/venv"
 "$folder/venv/bin/python" -m pip install --quiet --no-build-isolation --no-deps --no-index \
   --disable-pip-version-check "$tree/client/python"
-TRIBODYND=$tribodynd TRIBODYN_TREE=$tree TRIBODYN_FOLDER=$folder \
+TRIBODYND=$tribodynd TRIBODYN=$tribodyn TRIBODYN_TREE=$tree TRIBODYN_FOLDER=$folder \
   "$folder/venv/bin/python" -m pytest -q -p no:cacheprovider "$tests" "$@"

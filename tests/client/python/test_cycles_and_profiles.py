@@ -29,7 +29,9 @@ def test_a_cycle_has_energies_by_part_and_columns_of_its_pieces(client):
     energies = {table["part"][i]: table["loss_joules"][i] for i in first}
     assert energies["all"] == pytest.approx(energies["drive"] + energies["coast"])
     assert np.isnan(table["inefficiency_percent"][1])  # standstill
-    assert set(table["status"]) == {"OK"}
+    assert set(table["status"]) == {"OK"} and table.attrs["not_included"]
+    rows = set(range(len(table)))
+    assert all(rows.issuperset(each["rows"]) for each in table.attrs["warnings"].values())
 
 
 def test_a_cycle_of_a_table_equals_that_of_its_file_and_of_the_coroutine(client, server, tmp_path):

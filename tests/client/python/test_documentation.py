@@ -90,6 +90,9 @@ def test_the_loop_of_optimisation_ends_inside_its_bounds(run_notebook):
 def test_the_loop_with_gradients_finds_the_best_oil_within_twenty_evaluations(run_notebook):
     out, _ = run_notebook("find_best_oil")
     found = re.search(
-        r"inefficiency: ([\d.]+) % after (\d+) evaluations, with a film\s+of ([\d.]+)", out
+        r"inefficiency: ([\d.]+) % .* ([\d.]+) % as it is, after (\d+) evaluations, with a film"
+        r"\s+of ([\d.]+)",
+        out,
     )
-    assert float(found[1]) < 1.037 and int(found[2]) <= 20 and float(found[3]) >= 0.979
+    assert float(found[1]) < 0.9 * float(found[2])
+    assert int(found[3]) <= 20 and float(found[4]) >= 0.979

@@ -106,20 +106,21 @@ def test_a_refused_lubricant_refuses_a_comparison(client):
 
 def test_lubricants_are_compared_with_the_uncertainty_of_their_inputs(client):
     client.lubricants.create("sheet", kv40=103, kv100=15.1, density15=868, base_oil_class="pao")
+    client.lubricants.create("other", kv40=95, kv100=14.1, density15=862, base_oil_class="pao")
     found = client.compare_points(
-        [FLUID, "sheet"],
+        ["sheet", "other"],
         speeds_kilometres_per_hour=[40, "20 m/s"],
         sump_temperatures_celsius=[40, 90],
         speed_weights=[3, 1],
         draws=39,
         contact_figures=True,
     )
-    assert list(found["lubricant"]) == [f"lubricants/{FLUID}@1"] * 4 + ["lubricants/sheet@1"] * 4
+    assert list(found["lubricant"]) == ["lubricants/sheet@1"] * 4 + ["lubricants/other@1"] * 4
     assert list(found["speed_kilometres_per_hour"][:4]) == [40, 72, 40, 72]
     assert list(found["sump_temperature_celsius"][:4]) == [40, 40, 90, 90]
     assert set(found["status"]) == {"OK"} and list(found["verdict"][:4]) == [""] * 4
     figure = "inefficiency_energy_mean_percent"
-    assert (found[f"{figure}_standard_uncertainty"][4:] > 0).all()
+    assert found["uncertainty_stated"].all() and (found[f"{figure}_standard_uncertainty"] > 0).all()
     assert (found["mesh_friction_coefficient_value"] > 0).all()
     assert set(found["verdict"][4:]) <= {"lower", "higher", "cannot-be-told-apart"}
     values = found[f"{figure}_value"]
@@ -129,9 +130,50 @@ def test_lubricants_are_compared_with_the_uncertainty_of_their_inputs(client):
     weighted = [(3 * v[0] + v[1] + 3 * v[2] + v[3]) / 8 for v in (values[:4], list(values[4:]))]
     assert list(mean["mean_inefficiency_percent_value"]) == pytest.approx(weighted, rel=1e-9)
     assert "pressure_viscosity_coefficient" in mean["measure_first"][1]
+    assert all(set(each["rows"]) <= set(range(8)) for each in found.attrs["warnings"].values())
+    assert found.attrs["not_included"]
     with pytest.raises(tribodyn.TribodynError) as caught:
         client.compare_points([FLUID], speeds_kilometres_per_hour=["fast"], speed_weights=[1, 2])
     assert len(caught.value.violations) == 2
+
+
+def test_without_a_stated_uncertainty_there_is_a_difference_and_no_verdict(client):
+    oils = {"certain-1": "paper-fluid-1", "certain-2": "paper-fluid-2"}
+    for name, like in oils.items():
+        oil = client.lubricants.get(like)
+        oil.ClearField("provenance")
+        client.lubricants.create(name, oil)
+    found = client.compare_points(list(oils), draws=39)
+    assert list(found["verdict"]) == ["", "uncertainty-not-stated"]
+    assert not found["uncertainty_stated"].any() and found["difference_percent_value"][1] != 0
+    for name in ("difference_percent_interval_minimum", "lower_probability"):
+        assert np.isnan(found[name][1])
+    assert np.isnan(found.attrs["mean"]["best_probability"]).all()
+
+
+def test_a_warning_that_withholds_the_verdict_names_its_rows(client):
+    code, paper = "INLET_HEATING_LEFT_OUT", {"preset": "paper"}
+    cold = {"speed_kilometres_per_hour": 110, "sump_temperature_celsius": -20}
+    table = [{**cold, "lubricant": "nothing"}, {**cold, "lubricant": FLUID}]
+    by_jobs = client.points(table, options=tribodyn.Options(model_options=paper))
+    screened = client.evaluate(table, model_options=paper)
+    for found in (by_jobs, screened):
+        warning = found.attrs["warnings"][code]
+        assert warning["level"] == "withholds-verdict" and warning["rows"] == [1]
+        assert warning["summary"] and warning["message"] and found["verdict_withheld"][1]
+    assert screened.attrs["not_included"]
+    compared = client.compare_points(
+        [FLUID, "paper-fluid-2"],
+        speeds_kilometres_per_hour=[110],
+        sump_temperatures_celsius=[-20],
+        model_options=paper,
+        draws=39,
+    )
+    assert compared.attrs["warnings"][code]["rows"] == [0, 1]
+    recommended = client.evaluate(table)
+    assert code not in recommended.attrs["warnings"]
+    figure = "inefficiency_energy_mean_percent"
+    assert recommended[figure][1] > screened[figure][1]
 
 
 def test_a_difference_is_explained_by_groups_of_parameters(client):

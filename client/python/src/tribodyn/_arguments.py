@@ -68,11 +68,14 @@ def full_names(collection: str, names: str | Sequence[str]) -> list[str]:
 
 
 def set_switches(arguments: Arguments, path: str, switches: Mapping[str, Any], out: Any) -> None:
+    """Sets the fields of a message that are stated; None leaves the server's default."""
     fields = out.DESCRIPTOR.fields_by_name
     for name, value in switches.items():
         described = fields.get(name)
         if described is None:
             arguments.wrong(f"{path}.{name}", f"{name} is unknown; allowed: {', '.join(fields)}")
+        elif value is None:
+            continue
         elif described.message_type is not None:
             set_switches(arguments, f"{path}.{name}", value, getattr(out, name))
         elif described.enum_type is not None:

@@ -12,8 +12,9 @@ from tribodyn._candidate_columns import CandidateColumns, add_attributes, add_ca
 from tribodyn._columns import read_columns
 from tribodyn._csv import table_rows
 from tribodyn._decisions import Decisions
-from tribodyn._figures import RIG_FIGURES, FigureChoice
-from tribodyn._frames import Frame, enum_word, frame
+from tribodyn._figures import campaign_figures
+from tribodyn._enums import enum_word
+from tribodyn._frames import Frame, frame
 from tribodyn._parameters import read_parameters
 from tribodyn._progress import Progress
 from tribodyn._stored_campaign import SERVICE
@@ -28,6 +29,14 @@ _FIRST_LOOK, _LATEST_LOOK = 0.01, 0.5
 _FOLLOW_RETRIES = 20  # about 40 s in all: long enough for a server that drains and restarts
 _NOT_COMPUTED = -1  # in refusal_number
 _STATUS = ("status", "status_message")
+_SWITCHES = (
+    "contact_loss",
+    "settled",
+    "responses_coexist",
+    "verdict_withheld",
+    "elasticities_one_sided",
+)
+_WHOLE_NUMBERS = ("period_in_mesh_cycles", "warning_bits")
 
 
 class AsyncCampaign(Decisions):
@@ -71,13 +80,15 @@ class AsyncCampaign(Decisions):
         """Returns rows as a table, finished or not; ``row_count`` 0: to the end. ``columns``: what
         the candidates were created with, "candidate", "condition" and "row" (numbers from 0), the
         fields of conditions, figures, "status" and "status_message"; empty: all but the three
-        numbers. ``filter``: only rows of the range that satisfy all its conditions, e.g.
-        "refusal_number > 0" (rows without figures) or "film_ratio_minimum < 1 AND additive = ZDDP";
-        the server reads it, so that columns have its names, e.g. "lubricant.FIELD"."""
+        numbers. "verdict_withheld": a warning says that the row decides nothing between candidates;
+        "warning_bits": 2^n for warning n of the server; ranking() names them. ``filter``: only rows
+        of the range that satisfy all its conditions, e.g. "refusal_number > 0" (rows without
+        figures) or "film_ratio_minimum < 1 AND additive = ZDDP"; the server reads it, so that
+        columns have its names, e.g. "lubricant.FIELD"."""
         details = await self._full()
         own = CandidateColumns(details)
         names = [columns] if isinstance(columns, str) else list(columns)
-        figures = RIG_FIGURES if details.HasField("rig") else FigureChoice.of(details).columns()
+        figures = campaign_figures(details)
         names = names or [*own.names(), *figures, *_STATUS]
         arguments = Arguments()
         known = {*own.names(), *figures, *_STATUS, "candidate", "condition", "row"}
@@ -257,6 +268,6 @@ def _tight(name: str, values: np.ndarray) -> np.ndarray:
         return np.array(words, dtype=object)[np.nan_to_num(values).astype(int)]
     if np.isnan(values).any():
         return values
-    if name in ("contact_loss", "settled", "responses_coexist", "elasticities_one_sided"):
+    if name in _SWITCHES:
         return values.astype(bool)
-    return values.astype(int) if name == "period_in_mesh_cycles" else values
+    return values.astype(int) if name in _WHOLE_NUMBERS else values

@@ -81,6 +81,13 @@ async def add_candidates(
             service, method, kind = _GETTERS[owner]
             resource = await transport.call(service, method, kind(name=name))
             usual = getattr(resource, field)
+            if (
+                resource.DESCRIPTOR.fields_by_name[field].has_presence
+                and not resource.HasField(field)
+            ):
+                raise invalid_fields(
+                    [Violation(path, f"is missing in some rows, and {name} has none")]
+                )
             values = [usual if each is None else each for each in values]
         campaign.candidate_columns.add(path=path, values=values)
 

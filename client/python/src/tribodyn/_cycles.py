@@ -8,8 +8,10 @@ import numpy as np
 
 from tribodyn._arguments import Arguments, full_name, full_names, set_switches
 from tribodyn._csv import rows_of
-from tribodyn._frames import Frame, enum_word, frame, in_columns
+from tribodyn._enums import enum_word
+from tribodyn._frames import Frame, frame, in_columns
 from tribodyn._session import Session
+from tribodyn._warnings import Warnings, add_warnings
 from tribodyn.units import Quantity
 from tribodyn.v1 import cycles_pb2 as pb
 
@@ -61,7 +63,9 @@ class Cycles(Session):
         adaptive map: ``map_tolerance`` (1e-5 to 0.1; None: 2e-3) is the wanted relative error of the
         energy lost; or each piece of at most 1 s is solved, ``point_by_point``, without a map
         tolerance. ``attrs`` holds ``whole``, the energies with their errors, and ``pieces``, speed,
-        torque and loss over time. A lubricant that the model refuses has NaN, and the reason in
+        torque and loss over time, ``warnings`` as of point(), those of the fluids among them, and
+        ``not_included``: what the figures leave out. The uncertainty of the inputs is not in them:
+        compare_points() has it. A lubricant that the model refuses has NaN, and the reason in
         ``status``."""
         arguments = Arguments()
         request = pb.EvaluateCycleRequest(
@@ -85,8 +89,11 @@ class Cycles(Session):
         set_switches(arguments, "model_options", model_options or {}, request.model_options)
         arguments.check()
         answer = await self._call("CycleService", "EvaluateCycle", request, patient=True)
-        rows = []
+        rows: list[dict[str, Any]] = []
+        warnings: Warnings = {}
         for lubricant in answer.lubricants:
+            own = range(len(rows), len(rows) + len(answer.parts))
+            add_warnings(warnings, [*lubricant.warnings, *lubricant.input_warnings], own)
             for part, loss in zip(answer.parts, lubricant.parts or [None] * len(answer.parts)):
                 rows.append(
                     {
@@ -101,7 +108,7 @@ class Cycles(Session):
                         "status_message": lubricant.refusal_message,
                     }
                 )
-        return frame(in_columns(rows), _attrs(answer))
+        return frame(in_columns(rows), {**_attrs(answer), "warnings": warnings})
 
 
 def _set_cycle(arguments: Arguments, cycle: Any, request: pb.EvaluateCycleRequest) -> None:
@@ -150,12 +157,5 @@ def _attrs(answer: pb.EvaluateCycleResponse) -> dict[str, Any]:
         "surface_revision": answer.surface_revision,
         "vehicle_revision": answer.vehicle_revision,
         "model_version": answer.model_version,
-        "warnings": {
-            of.lubricant_revision: {each.code: each.message for each in of.warnings}
-            for of in answer.lubricants
-        },
-        "input_warnings": {
-            of.lubricant_revision: {each.code: each.message for each in of.input_warnings}
-            for of in answer.lubricants
-        },
+        "not_included": answer.not_included,
     }

@@ -9,9 +9,10 @@ import numpy as np
 from tribodyn._arguments import Arguments, full_name
 from tribodyn._candidate_columns import CandidateColumns
 from tribodyn._figures import USUAL_FIGURE, USUAL_RIG_FIGURE
-from tribodyn._frames import Frame, frame
+from tribodyn._frames import Frame, frame, in_columns
 from tribodyn._parameters import parameter_path, read_parameters
 from tribodyn._stored_campaign import StoredCampaign
+from tribodyn._warnings import level_word
 from tribodyn.units import Quantity
 from tribodyn.v1 import campaigns_pb2 as pb
 
@@ -29,6 +30,8 @@ class Decisions(StoredCampaign):
         uncertainties: Mapping[str, Quantity] | None = None,
         stated_uncertainties: bool = True,
         confidence: float = 0.95,
+        estimate_correlation: float | None = None,
+        draws: int = 0,
         count: int = 1000,
     ) -> Frame:
         """Returns a table of the ``count`` best candidates (at most 1000), one a row, finished or not:
@@ -43,11 +46,20 @@ class Decisions(StoredCampaign):
         of a parameter in the table each candidate's own, of another one common to all. Those that
         lubricant and surface state count too unless ``stated_uncertainties`` is False.
 
+        Candidates that are lubricants have the errors of compare_points(), with its
+        ``estimate_correlation`` and ``draws`` (0: 199).
+
         Columns: what the candidates were created with, "candidate" (numbers from 0), the figures,
-        "solver_error" (a bound), "standard_uncertainty" (by the inputs), "worse_probability" (than
-        the best one) and "tied": the probability is below ``confidence``. The last three are NaN and
-        None beyond ``attrs["compared"]`` candidates. ``attrs`` counts the others as "excluded",
-        "refused" and "missing" (not computed yet).
+        "solver_error" (a bound), "verdict_withheld", "standard_uncertainty" (by the inputs),
+        "worse_probability" (than the best one) and "tied": the interval of the difference that has
+        the probability ``confidence`` holds 0. The last three are NaN and None beyond
+        ``attrs["compared"]`` candidates, where no uncertainty is stated, and where a warning withholds
+        the verdict: these candidates stand last.
+
+        ``attrs["warnings"]`` holds, by code, level, summary and the numbers of the candidates
+        concerned; ``attrs["refused_candidates"]`` is a table of those without a figure, with the
+        reason; ``attrs["not_included"]`` says what the figures leave out. ``attrs`` counts the others
+        as "excluded", "refused" and "missing" (not computed yet), and those "withheld".
         """
         arguments = Arguments()
         by = by or self._usual_figure()
@@ -59,6 +71,8 @@ class Decisions(StoredCampaign):
             confidence=confidence,
             count=count,
             ignore_stated_uncertainties=not stated_uncertainties,
+            estimate_correlation=estimate_correlation,
+            draws=draws,
         )
         for name, value in (uncertainties or {}).items():
             _add_uncertainty(arguments, name, value, request)
@@ -71,6 +85,7 @@ class Decisions(StoredCampaign):
         ]
         for i, constraint in enumerate(where or {}):
             cells.setdefault(constraint, [each.constraint_values[i] for each in found])
+        cells["verdict_withheld"] = [each.verdict_withheld for each in found]
         compared = [each.comparison if each.HasField("comparison") else None for each in found]
         for name in ("standard_uncertainty", "worse_probability"):
             cells[name] = [getattr(each, name) if each else np.nan for each in compared]
@@ -81,6 +96,29 @@ class Decisions(StoredCampaign):
             "compared": answer.compared,
             "own_uncertain_parameters": list(answer.own_uncertain_parameters),
             "shared_uncertain_parameters": list(answer.shared_uncertain_parameters),
+            "withheld": answer.withheld,
+            "draws": answer.draws,
+            "warnings": {
+                each.code: {
+                    "level": level_word(each.level),
+                    "summary": each.summary,
+                    "candidates": list(each.candidates),
+                }
+                for each in answer.warnings
+            },
+            "refused_candidates": frame(
+                in_columns(
+                    {
+                        "candidate": each.candidate,
+                        "label": each.label,
+                        "status": each.refusal.reason,
+                        "status_message": each.refusal.message,
+                    }
+                    for each in answer.refused_candidates
+                ),
+                {},
+            ),
+            "not_included": answer.not_included,
         }
         return await self._of_candidates([each.candidate for each in found], cells, attrs)
 
@@ -95,8 +133,8 @@ class Decisions(StoredCampaign):
         condition_weights: Sequence[float] = (),
     ) -> Frame:
         """Returns a table of the candidates that no other one beats in both of two figures, the best
-        by the first one first. Figures and ``where`` as of ranking(). ``attrs`` counts the others as
-        "beaten", "excluded", "refused" and "missing"."""
+        by the first one first. Figures and ``where`` as of ranking(), whose warnings hold here too.
+        ``attrs`` counts the others as "beaten", "excluded", "refused" and "missing"."""
         arguments = Arguments()
         first = first or self._usual_figure()
         request = pb.FindParetoCandidatesRequest(
@@ -129,8 +167,10 @@ class Decisions(StoredCampaign):
         """Returns a table of what columns of the candidates do to a figure, the largest effect first:
         from the lowest value to the highest one, or from the most frequent text to another one, by a
         linear model without interactions. "effect_minimum" and "effect_maximum" hold the effect with
-        the probability ``coverage``. ``columns``: empty means all; ``attrs["left_out"]`` says which
-        have no effect and why. Figures and ``where`` as of ranking()."""
+        the probability ``coverage``. ``columns``: empty means all parameters, which the model uses;
+        what rides along need not be a cause. "collinear_columns" names those whose effects cannot be
+        separated from that of a column; ``attrs["left_out"]`` says which have no effect and why.
+        Figures and ``where`` as of ranking(), whose warnings hold here too."""
         arguments = Arguments()
         figure = figure or self._usual_figure()
         request = pb.EstimateCandidateEffectsRequest(
@@ -154,6 +194,7 @@ class Decisions(StoredCampaign):
         )
         for name in ("effect", "effect_minimum", "effect_maximum"):
             cells[name] = [getattr(each, name) for each in found]
+        cells["collinear_columns"] = [" ".join(each.collinear_columns) for each in found]
         reasons = pb.ColumnWithoutEffect.Reason
         attrs = {
             **_counts(answer),

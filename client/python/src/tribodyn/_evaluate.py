@@ -9,13 +9,15 @@ from typing import Any, Mapping, Sequence
 
 from tribodyn._arguments import Arguments, full_name, set_switches
 from tribodyn._figures import FigureChoice
-from tribodyn._frames import Frame, enum_word
+from tribodyn._enums import enum_word
+from tribodyn._frames import Frame
 from tribodyn._jobs import gather
 from tribodyn._parameters import is_parameter, read_parameters
 from tribodyn._progress import Progress
 from tribodyn._session import Session
 from tribodyn._table_rows import beside, rows_with
 from tribodyn._transport import Transport
+from tribodyn._warnings import add_warnings
 from tribodyn.errors import TribodynError, Violation, is_about_the_request
 from tribodyn.v1 import points_pb2, results_pb2
 
@@ -52,8 +54,9 @@ class Evaluations(Session):
         row has in place of the parameter of its lubricant or surface, with units as of create():
         "lubricant.relaxation_time_seconds", "surface.asperity_friction_coefficient". The server
         keeps nothing. A figure agrees with that of a point within the estimated errors of both.
-        ``model_options`` as of Options; ``status`` as of points(). ``attrs`` holds model_version,
-        the revisions used and, by code, the warnings of the responses.
+        ``model_options`` as of Options; ``status`` as of points(); ``verdict_withheld``: a warning
+        says that the row decides nothing between lubricants. ``attrs`` holds model_version, the
+        revisions used, ``warnings`` as of point() and ``not_included``: what the figures leave out.
 
         ``contact_figures`` adds film_ratio_minimum and film_ratio_mean (lambda_s),
         contact_temperature_maximum_kelvin and contact_temperature_mean_kelvin,
@@ -125,7 +128,12 @@ class _Evaluation:
         arguments.check()
         self._calls = asyncio.Semaphore(_CALLS_AT_A_TIME)
         self._cells: dict[int, dict[str, Any]] = {}
-        self.attrs: dict[str, Any] = {"model_version": "", "revisions": [], "warnings": {}}
+        self.attrs: dict[str, Any] = {
+            "model_version": "",
+            "revisions": [],
+            "warnings": {},
+            "not_included": "",
+        }
 
     async def run(
         self, rows: Sequence[Mapping[str, Any]], progress_form: str
@@ -218,7 +226,11 @@ class _Evaluation:
             for name in self._figures.columns()
         }
         self.attrs["model_version"] = answer.model_version
-        self.attrs["warnings"].update({each.code: each.message for each in answer.warnings})
+        self.attrs["not_included"] = answer.not_included
+        for each in answer.warnings:
+            for row in each.rows:
+                candidate, condition = divmod(row, answer.conditions)
+                add_warnings(self.attrs["warnings"], [each], request.rows[candidate][condition])
         for kind in ("lubricant", "gear_set", "surface", "vehicle"):
             revision = getattr(answer, kind + "_revision")
             if revision not in self.attrs["revisions"]:

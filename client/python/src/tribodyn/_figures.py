@@ -50,6 +50,9 @@ RIG_FIGURES = [
 ]
 USUAL_RIG_FIGURE = "traction_coefficient"
 
+# Columns of warnings that every campaign has; the first one is a figure of points too.
+_WARNING_COLUMNS = ("verdict_withheld", "warning_bits")
+
 
 def _path(arguments: Arguments, name: str) -> str:
     """Returns the path of a parameter. The server knows those that candidates have in common."""
@@ -102,3 +105,9 @@ class FigureChoice:
         for figure in self.elasticity_figures or (USUAL_FIGURE,):
             out += [f"elasticity.{figure}.{each}" for each in self.elasticity_parameters]
         return out
+
+
+def campaign_figures(campaign: Any) -> list[str]:
+    """Returns the names of the columns that the server computes for a campaign."""
+    figures = RIG_FIGURES if campaign.HasField("rig") else FigureChoice.of(campaign).columns()
+    return list(dict.fromkeys([*figures, *_WARNING_COLUMNS]))

@@ -7,6 +7,8 @@ from typing import Any, Iterable, Mapping, Sequence
 import numpy as np
 from google.protobuf.message import Message
 
+from tribodyn._enums import enum_word
+from tribodyn._warnings import Warnings, add_warnings, of_inputs, withholds_verdict
 from tribodyn.v1 import results_pb2, simulations_pb2
 
 # A pandas.DataFrame, or a Table without pandas. Both have `attrs` and columns by name.
@@ -129,15 +131,6 @@ def message_cells(message: Message, prefix: str = "", present: bool = True) -> d
     return {name: value for name, value in row.items() if name not in lists}
 
 
-def enum_word(kind: Any, number: int) -> str:
-    """Returns e.g. "quasi-static" for POINT_MODEL_QUASI_STATIC; "" for the unspecified value."""
-    prefix = "".join("_" + each if each.isupper() else each.upper() for each in kind.name)[1:] + "_"
-    value = kind.values_by_number.get(number)
-    if value is None or number == 0:
-        return ""
-    return value.name.removeprefix(prefix).lower().replace("_", "-")
-
-
 def point_row(point: results_pb2.CurvePoint) -> dict[str, Any]:
     """Returns the cells of one point: figures, or NaN and the reason why there are none."""
     there = point.HasField("result")
@@ -146,6 +139,7 @@ def point_row(point: results_pb2.CurvePoint) -> dict[str, Any]:
     if there:
         row["speed_kilometres_per_hour"] = point.result.vehicle_speed_kilometres_per_hour
     row["warnings"] = " ".join(each.code for each in point.result.warnings)
+    row["verdict_withheld"] = withholds_verdict(point.result.warnings)
     row["status"] = "OK" if there else point.refusal_reason
     row["status_message"] = point.refusal_message
     return row
@@ -164,9 +158,9 @@ def result_attrs(simulation: simulations_pb2.Simulation) -> dict[str, Any]:
         for point in result.points
         if point.result.HasField("estimated_relative_error")
     ]
-    warnings = {
-        each.code: each.message for point in result.points for each in point.result.warnings
-    }
+    warnings: Warnings = {}
+    for row, point in enumerate(result.points):
+        add_warnings(warnings, point.result.warnings, [row])
     return {
         "simulation": simulation.name,
         "lubricant": simulation.lubricant_revision,
@@ -178,7 +172,7 @@ def result_attrs(simulation: simulations_pb2.Simulation) -> dict[str, Any]:
         "platform": result.platform,
         "estimated_relative_error": max(errors, default=None),
         "warnings": warnings,
-        "input_warnings": {each.code: each.message for each in result.input_warnings},
+        "input_warnings": of_inputs(result.input_warnings),
         "branch_ends": [
             (
                 point.branch_end.followed_to_kilometres_per_hour,
@@ -189,6 +183,12 @@ def result_attrs(simulation: simulations_pb2.Simulation) -> dict[str, Any]:
         ],
         "cache_hit": simulation.cache_hit,
     }
+
+
+def point_attrs(simulation: simulations_pb2.Simulation) -> dict[str, Any]:
+    """Returns the same of an operating point, for tables whose rows are no points."""
+    warnings = simulation.result.points[0].result.warnings
+    return {**result_attrs(simulation), "warnings": of_inputs(warnings)}
 
 
 def sensitivity_table(
@@ -206,7 +206,7 @@ def sensitivity_table(
         columns[f"elasticity.{figure}"] = [each.elasticities[i] for each in found.parameters]
     figures = dict(zip(found.figures, found.values))
     return columns, {
-        **result_attrs(simulation),
+        **point_attrs(simulation),
         "figures": figures,
         "one_sided": found.one_sided,
     }

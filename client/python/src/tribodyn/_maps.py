@@ -11,6 +11,7 @@ import numpy as np
 from tribodyn._arguments import Arguments, full_name, set_switches
 from tribodyn._frames import Frame, frame
 from tribodyn._session import Session
+from tribodyn._warnings import of_inputs, of_rows
 from tribodyn.units import Quantity
 from tribodyn.v1 import rigs_pb2, spectra_pb2, viscosities_pb2
 
@@ -52,7 +53,7 @@ class Maps(Session):
             "is_periodic": answer.is_periodic,
             "mesh_frequency_hertz": answer.mesh_frequency_hertz,
             "model_version": answer.model_version,
-            "input_warnings": {each.code: each.message for each in answer.input_warnings},
+            "input_warnings": of_inputs(answer.input_warnings),
         }
         return frame(cells, attrs)
 
@@ -124,7 +125,7 @@ class Maps(Session):
         ``status``. ``draws`` (19 to 1999) of the stated uncertainties of lubricant and surface add
         ``{figure}_standard_uncertainty``, ``{figure}_interval_minimum`` and ``..._maximum`` (95 %)
         for each figure that they move, and ``refused_draws``; ``attrs["inputs_without_uncertainty"]``
-        names what counts as exact."""
+        names what counts as exact. ``attrs["warnings"]`` as of point()."""
         arguments = Arguments()
         request = rigs_pb2.EvaluateRigRequest(
             draws=draws,
@@ -163,10 +164,7 @@ class Maps(Session):
                 columns[f"{each.figure}_{end}"] = np.array(getattr(each, end))
         columns["status"], columns["status_message"] = _statuses(answer)
         attrs = _attrs(answer)
-        attrs["range_warnings"] = {
-            each.code: {"message": each.message, "rows": list(each.rows)}
-            for each in answer.range_warnings
-        }
+        attrs["warnings"] = of_rows(answer.range_warnings)
         if draws > 0:
             columns["refused_draws"] = np.array(answer.refused_draws)
             attrs["inputs_without_uncertainty"] = list(answer.inputs_without_uncertainty)
@@ -206,5 +204,5 @@ def _attrs(answer: Any) -> dict[str, Any]:
     return {
         "model_version": answer.model_version,
         "lubricant_revision": answer.lubricant_revision,
-        "input_warnings": {each.code: each.message for each in answer.input_warnings},
+        "input_warnings": of_inputs(answer.input_warnings),
     }

@@ -13,6 +13,7 @@ from tribodyn._session import Session
 from tribodyn._simulation_requests import Options
 from tribodyn._table_rows import beside, rows_with
 from tribodyn._transport import new_request_id
+from tribodyn._warnings import Warnings, add_warnings
 from tribodyn.errors import TribodynError
 from tribodyn.v1 import simulations_pb2 as pb
 
@@ -51,15 +52,21 @@ class Points(Session):
         sump_temperature_celsius, speed_kilometres_per_hour and so on; ``parameters`` hold for the
         rows that state none. Other columns ride along. The points are jobs, with the bits of
         point(), solved in parallel. A row that fails has NaN, the reason in ``status`` and a
-        sentence in ``status_message``; the others have "OK". ``options.request_id`` is not used:
-        equal inputs are computed once anyway.
+        sentence in ``status_message``; the others have "OK". ``attrs["warnings"]`` and
+        ``attrs["input_warnings"]`` hold the warnings as of point(), each with the rows that it holds
+        for. ``options.request_id`` is not used: equal inputs are computed once anyway.
         """
         given, rows = rows_with(table, parameters, lambda name: name in ("lubricant", *_PARAMETERS))
 
         async def run(jobs: Sequence[pb.CreateSimulationRequest]) -> Sequence[Outcome]:
             return await self._run_jobs(jobs, "points")
 
-        return beside(table, given, await _solve_rows(rows, options, run), {})
+        warnings: Warnings = {}
+        input_warnings: Warnings = {}
+        cells = await _solve_rows(rows, options, run, warnings, input_warnings)
+        return beside(
+            table, given, cells, {"warnings": warnings, "input_warnings": input_warnings}
+        )
 
 
 @dataclass
@@ -71,9 +78,14 @@ class _Job:
 
 
 async def _solve_rows(
-    rows: Sequence[Mapping[str, Any]], options: Options, run_all: RunAll
+    rows: Sequence[Mapping[str, Any]],
+    options: Options,
+    run_all: RunAll,
+    warnings: Warnings,
+    input_warnings: Warnings,
 ) -> list[dict[str, Any]]:
-    """Returns the cells of each row: figures and status "OK", or NaN and the reason."""
+    """Returns the cells of each row: figures and status "OK", or NaN and the reason. Adds the
+    warnings with the rows that they hold for."""
     cells: dict[int, dict[str, Any]] = {}
     points: dict[int, pb.Simulation] = {}
     for index, row in enumerate(rows):
@@ -93,9 +105,9 @@ async def _solve_rows(
             # One wrong row refuses the curve: the others are computed without it.
             singly += [_Job(_request(points[row], options), [row]) for row in job.rows]
         else:
-            _place(job, outcome, points, cells)
+            _place(job, outcome, points, cells, warnings, input_warnings)
     for job, outcome in zip(singly, await run_all([job.request for job in singly])):
-        _place(job, outcome, points, cells)
+        _place(job, outcome, points, cells, warnings, input_warnings)
     return [cells[index] for index in range(len(rows))]
 
 
@@ -172,6 +184,8 @@ def _place(
     outcome: Outcome,
     points: Mapping[int, pb.Simulation],
     cells: dict[int, dict[str, Any]],
+    warnings: Warnings,
+    input_warnings: Warnings,
 ) -> None:
     for row in job.rows:
         if isinstance(outcome, TribodynError):
@@ -183,6 +197,8 @@ def _place(
             found = min(
                 outcome.result.points, key=lambda each: abs(each.speed_kilometres_per_hour - speed)
             )
+        add_warnings(warnings, found.result.warnings, [row])
+        add_warnings(input_warnings, outcome.result.input_warnings, [row])
         cells[row] = {
             **point_row(found),
             "simulation": outcome.name,

@@ -9,8 +9,10 @@ from typing import Any, Sequence
 import numpy as np
 
 from tribodyn._arguments import Arguments
-from tribodyn._frames import Frame, enum_word, frame, in_columns
+from tribodyn._enums import enum_word
+from tribodyn._frames import Frame, frame, in_columns
 from tribodyn._session import Session
+from tribodyn._warnings import of_inputs
 from tribodyn.units import Quantity
 from tribodyn.v1 import profiles_pb2 as pb
 from tribodyn.v1 import surfaces_pb2
@@ -83,7 +85,7 @@ class Profiles(Session):
                 in_columns([_measurement(each) for each in answer.measurements]), {}
             ),
             "groups": frame(in_columns([_group(each) for each in answer.groups]), {}),
-            "warnings": {each.code: each.message for each in answer.warnings},
+            "warnings": of_inputs(answer.warnings),
         }
         return frame(in_columns([_surface(each) for each in answer.surfaces]), attrs)
 

@@ -9,7 +9,8 @@ from typing import Any, Generic, List, Mapping, Type, TypeVar
 from google.protobuf.message import Message
 
 from tribodyn._csv import rows_of
-from tribodyn._frames import Frame, enum_word, frame, in_columns
+from tribodyn._enums import enum_word
+from tribodyn._frames import Frame, frame, in_columns
 from tribodyn._rows import fill, find_column, unknown
 from tribodyn._arguments import full_name
 from tribodyn._transport import Transport

@@ -64,9 +64,10 @@ class Screening(Session):
         ``table`` is as of points(). A column "lubricant.FIELD" or "surface.FIELD" states what
         candidates have in place of the parameter of ``lubricant`` or ``surface``, as of evaluate();
         an empty cell leaves that. Other columns ride along, "name" among them; characters of their
-        names beyond letters, digits, "-", "_" and "." become "_". Weights, one for each speed and
-        sump temperature and above 0, are those of ranking(); None: equal. ``contact_figures`` and
-        ``elasticities`` as of evaluate().
+        names beyond letters, digits, "-", "_" and "." become "_". Oils that are known by their data
+        sheets are Lubricants: a table cannot carry the uncertainty of what is estimated. Weights, one
+        for each speed and sump temperature and above 0, are those of ranking(); None: equal.
+        ``contact_figures`` and ``elasticities`` as of evaluate(), ``model_options`` as of Options.
 
         ``table`` may also be a Design, which the server makes, or Lubricants, each of which is a
         candidate; of these the first one is the base if ``lubricant`` is None. Candidates that are

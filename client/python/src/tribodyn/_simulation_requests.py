@@ -20,7 +20,8 @@ class Options:
     """What few studies state: how they are solved, and the job."""
 
     #: what the model includes: fields of ModelOptions, e.g. {"isothermal": True}, and of
-    #: AsPublished below "as_published"
+    #: AsPublished below "as_published". "preset": "recommended" (the default) or "paper", to compare
+    #: with the publication; it decides inlet_shear_heating and closed_load_sharing
     model_options: Mapping[str, Any] = field(default_factory=dict)
     #: where the search for a steady state starts: "quasi-static-equilibrium" or "large-vibration"
     start: str | None = None

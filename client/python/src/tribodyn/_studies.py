@@ -11,6 +11,7 @@ from tribodyn._frames import (
     Frame,
     frame,
     in_columns,
+    point_attrs,
     point_row,
     result_attrs,
     sensitivity_columns,
@@ -18,6 +19,7 @@ from tribodyn._frames import (
 )
 from tribodyn._session import Session
 from tribodyn._simulation_requests import Options
+from tribodyn._warnings import Warnings, add_warnings, of_inputs
 from tribodyn.errors import TribodynError
 from tribodyn.units import Quantity
 from tribodyn.v1 import simulations_pb2 as pb
@@ -54,8 +56,11 @@ class Studies(Session):
         ``model``: "automatic" (the cheapest within the tolerance), "full" or "quasi-static".
 
         Columns are the fields of PointResult, with units in their names; a figure that is not there
-        is NaN. ``attrs`` holds input_hash, model_version, platform, estimated_relative_error,
-        warnings, input_warnings, the revisions used and the name of the simulation.
+        is NaN; ``verdict_withheld``: a warning says that the figures decide nothing between
+        lubricants. ``attrs`` holds input_hash, model_version, platform, estimated_relative_error,
+        the revisions used and the name of the simulation; ``warnings``, by code, each with its
+        "level" ("note", "caution" or "withholds-verdict"), "summary", "message" and "rows" of the
+        table; and ``input_warnings``, of the fluid, likewise without rows.
         """
         arguments = Arguments()
         simulation = requests.operating_point(
@@ -199,7 +204,8 @@ class Studies(Session):
         """Returns the curves of several lubricants in one table, with a column ``lubricant``.
 
         Arguments as of curve(). The curves run together; one refused lubricant refuses all.
-        ``attrs["results"]`` holds the attributes of each curve by the name of its lubricant.
+        ``attrs["results"]`` holds the attributes of each curve by the name of its lubricant,
+        ``attrs["warnings"]`` the warnings with the rows of this table.
         """
         if isinstance(lubricants, str):
             lubricants = [lubricants]
@@ -222,11 +228,14 @@ class Studies(Session):
         )
         simulations = [_with_lubricant(first, each) for each in lubricants]
         curves = await self._solve(arguments, simulations, options, "curve")
-        rows = []
+        rows: list[dict[str, Any]] = []
+        warnings: Warnings = {}
         for name, each in zip(lubricants, curves):
+            for row, point in enumerate(each.result.points, len(rows)):
+                add_warnings(warnings, point.result.warnings, [row])
             rows += [{"lubricant": name, **point_row(point)} for point in each.result.points]
         attrs = {name: result_attrs(each) for name, each in zip(lubricants, curves)}
-        return frame(in_columns(rows), {"results": attrs})
+        return frame(in_columns(rows), {"results": attrs, "warnings": warnings})
 
     async def histories(
         self,
@@ -279,7 +288,7 @@ class Studies(Session):
         wanted.samples_per_mesh_cycle = samples_per_mesh_cycle
         (found,) = await self._solve(arguments, [simulation], options, "history")
         history = await self.read_history(found.name)
-        history.attrs = {**result_attrs(found), **history.attrs}
+        history.attrs = {**point_attrs(found), **history.attrs}
         return history
 
     async def read_history(
@@ -311,7 +320,7 @@ class Studies(Session):
             "total_rows": schema.total_rows,
             "rows_per_pair": schema.rows_per_pair,
             "units": {each.name: each.unit for each in schema.columns},
-            "input_warnings": {each.code: each.message for each in schema.input_warnings},
+            "input_warnings": of_inputs(schema.input_warnings),
         }
         return frame({each.name: column for each, column in zip(schema.columns, values)}, attrs)
 

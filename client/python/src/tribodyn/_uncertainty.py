@@ -6,12 +6,15 @@ import itertools
 from typing import Any, Mapping, Sequence
 
 from tribodyn._arguments import Arguments, full_name, full_names, set_switches
-from tribodyn._frames import Frame, enum_word, frame, in_columns, message_cells
+from tribodyn._enums import enum_word
+from tribodyn._frames import Frame, frame, in_columns, message_cells
 from tribodyn._session import Session
+from tribodyn._warnings import Warnings, add_warnings
 from tribodyn.units import Quantity
 from tribodyn.v1 import points_pb2 as pb
 
 _VERDICT = "verdict"
+_MEAN = -1  # row of what holds for the mean of the conditions
 
 
 class Comparisons(Session):
@@ -42,15 +45,22 @@ class Comparisons(Session):
         """Returns one to eight lubricants at every speed and sump temperature with the uncertainty
         of their inputs, one row for each lubricant and condition, and what each loses more than the
         first: `difference_percent_value` with its 95 % interval, `lower_probability` and `verdict`
-        ("lower", "higher", "cannot-be-told-apart").
+        ("lower", "higher", "cannot-be-told-apart", "withheld" by a warning,
+        "uncertainty-not-stated").
 
         Columns FIGURE_standard_uncertainty come from ``draws`` draws of the inputs (None: 199),
         FIGURE_solver_error is the solver's. Uncertainties of temperatures are standard ones, in K.
         ``estimate_correlation`` (0 to 1; None: 0.5) is that of estimates that one estimator made for
         two lubricants. ``sheared``: the lubricants after the shear test. ``contact_figures``: also
-        film ratio, friction coefficient, pressure and temperatures. ``attrs["mean"]`` is a table of
-        the weighted means, with the probability of the least and the input to measure first.
-        Weights as of screen(); nothing is kept.
+        film ratio, friction coefficient, pressure and temperatures. Of a lubricant of which nobody
+        stated an uncertainty ``uncertainty_stated`` is False, and there is no interval.
+
+        ``attrs["mean"]`` is a table of the weighted means, with the probability of the least and the
+        input to measure first; ``attrs["deciding_inputs"]`` one of what would tell two lubricants
+        apart: the standard uncertainty that an input would need, and its ratio to the present one;
+        ``row`` is that of the difference, -1 for the mean, and with ``all_needed`` no single one would
+        do. ``attrs["warnings"]`` as of point(), ``attrs["not_included"]``: what the figures leave
+        out. Weights as of screen(); nothing is kept.
         """
         request = pb.ComparePointsRequest(
             lubricants=full_names("lubricants", lubricants),
@@ -110,7 +120,8 @@ class Comparisons(Session):
         uncertainty in the columns beside it; the shares of all groups sum to the difference.
         ``..._first_effect`` and ``..._last_effect`` are what the group adds if it is exchanged before
         and after all others. ``attrs["mean"]`` is the same table for the weighted mean,
-        ``attrs["interactions"]`` what pairs of groups add beyond what each adds alone.
+        ``attrs["interactions"]`` what pairs of groups add beyond what each adds alone;
+        ``attrs["warnings"]`` and ``attrs["not_included"]`` as of compare_points().
         ``draws``: None: 99. ``other_surface``: of the other lubricant, with the boundary film that
         it makes. Other arguments as of compare_points().
         """
@@ -200,25 +211,35 @@ def _weights(
 
 def _compared(request: pb.ComparePointsRequest, answer: pb.ComparePointsResponse) -> Frame:
     """Returns one row for each lubricant and condition."""
-    rows, means = [], []
+    rows: list[dict[str, Any]] = []
+    means: list[dict[str, Any]] = []
+    deciding: list[dict[str, Any]] = []
+    warnings: Warnings = {}
     for lubricant in answer.lubricants:
+        stated = lubricant.uncertainty_stated
         differences = list(lubricant.differences) or [None] * len(lubricant.points)
         for condition, point, difference in zip(request.conditions, lubricant.points, differences):
             row = _condition(lubricant.lubricant_revision, condition)
-            row.update(message_cells(point, present=not point.refusal_reason))
+            figures = message_cells(point, present=not point.refusal_reason)
+            row.update(figures if stated else _without_intervals(figures))
+            row["uncertainty_stated"] = stated
             row.update(_difference(difference))
             row.update(_status(row, point.refusal_reason))
+            add_warnings(warnings, point.warnings, [len(rows)])
+            deciding += _deciding(lubricant.lubricant_revision, len(rows), difference)
             rows.append(row)
         mean: dict[str, Any] = {"lubricant": lubricant.lubricant_revision}
-        mean.update(
-            message_cells(
-                lubricant.mean_inefficiency_percent,
-                "mean_inefficiency_percent_",
-                lubricant.HasField("mean_inefficiency_percent"),
-            )
+        figures = message_cells(
+            lubricant.mean_inefficiency_percent,
+            "mean_inefficiency_percent_",
+            lubricant.HasField("mean_inefficiency_percent"),
         )
+        mean.update(figures if stated else _without_intervals(figures))
+        mean["uncertainty_stated"] = stated
         has_difference = lubricant.HasField("mean_difference")
-        mean.update(_difference(lubricant.mean_difference if has_difference else None))
+        mean_difference = lubricant.mean_difference if has_difference else None
+        mean.update(_difference(mean_difference))
+        deciding += _deciding(lubricant.lubricant_revision, _MEAN, mean_difference)
         shares = lubricant.mean_difference.shares if has_difference else lubricant.mean_shares
         mean["measure_first"] = shares[0].input if shares else ""
         mean["measure_first_share"] = shares[0].variance_share if shares else float("nan")
@@ -228,14 +249,9 @@ def _compared(request: pb.ComparePointsRequest, answer: pb.ComparePointsResponse
         "mean": frame(in_columns(means), {}),
         "draws": answer.draws,
         "estimate_correlation": answer.estimate_correlation,
-        "warnings": {
-            each.lubricant_revision: {
-                warning.code: warning.message
-                for point in each.points
-                for warning in point.warnings
-            }
-            for each in answer.lubricants
-        },
+        "deciding_inputs": frame(in_columns(deciding), {}),
+        "warnings": warnings,
+        "not_included": answer.not_included,
         "inputs_without_uncertainty": {
             each.lubricant_revision: list(each.inputs_without_uncertainty)
             for each in answer.lubricants
@@ -248,13 +264,16 @@ def _compared(request: pb.ComparePointsRequest, answer: pb.ComparePointsResponse
 
 def _explained(request: pb.ExplainPointsRequest, answer: pb.ExplainPointsResponse) -> Frame:
     """Returns one row for each condition and group of parameters."""
-    rows = []
+    rows: list[dict[str, Any]] = []
+    warnings: Warnings = {}
     for condition, point in zip(request.conditions, answer.points):
+        causes = _causes(point)
+        add_warnings(warnings, point.warnings, range(len(rows), len(rows) + len(causes)))
         rows += [
-            {**_condition(answer.other_lubricant_revision, condition), **cells}
-            for cells in _causes(point)
+            {**_condition(answer.other_lubricant_revision, condition), **cells} for cells in causes
         ]
     mean = answer.mean
+    add_warnings(warnings, mean.warnings)
     attrs = {
         "mean": frame(in_columns(_causes(mean)), {}),
         "interactions": frame(
@@ -269,6 +288,8 @@ def _explained(request: pb.ExplainPointsRequest, answer: pb.ExplainPointsRespons
             ),
             {},
         ),
+        "warnings": warnings,
+        "not_included": answer.not_included,
         "inefficiency_percent": mean.inefficiency_percent.value,
         "other_inefficiency_percent": mean.other_inefficiency_percent.value,
         "inefficiency_difference_percent": mean.inefficiency_difference_percent.value,
@@ -305,11 +326,39 @@ def _difference(difference: pb.ComparedDifference | None) -> dict[str, Any]:
     message = difference or pb.ComparedDifference()
     there = message.HasField("difference_percent")
     out = message_cells(message.difference_percent, "difference_percent_", there)
+    if message.verdict == pb.ComparedDifference.UNCERTAINTY_NOT_STATED:
+        out = _without_intervals(out)
     out["lower_probability"] = message.lower_probability if there else float("nan")
     out[_VERDICT] = (
         enum_word(pb.ComparedDifference.Verdict.DESCRIPTOR, message.verdict) if there else ""
     )
     return out
+
+
+def _without_intervals(cells: dict[str, Any]) -> dict[str, Any]:
+    """Returns figures of whose inputs nobody stated an uncertainty: 0 would mean exact."""
+    ends = ("standard_uncertainty", "interval_minimum", "interval_maximum")
+    return {name: float("nan") if name.endswith(ends) else value for name, value in cells.items()}
+
+
+def _deciding(
+    lubricant: str, row: int, difference: pb.ComparedDifference | None
+) -> list[dict[str, Any]]:
+    """Returns what would tell a lubricant and the first one apart."""
+    if difference is None:
+        return []
+    return [
+        {
+            "lubricant": lubricant,
+            "row": row,
+            "input": each.input,
+            "input_of": each.lubricant_revision,
+            "standard_uncertainty": each.standard_uncertainty,
+            "factor": each.factor,
+            "all_needed": difference.all_needed,
+        }
+        for each in difference.deciding_inputs
+    ]
 
 
 def _status(row: dict[str, Any], reason: str) -> dict[str, str]:

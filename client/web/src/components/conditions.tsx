@@ -3,9 +3,10 @@ import type { GearSet, Lubricant } from '../api/types';
 import type { Violation } from '../api/client';
 import { fluidsOf, shortTitle, type Curve } from '../curve';
 import { idOf } from '../format';
-import { OPTIONS, type CurveRequest } from '../request';
+import { type CurveRequest } from '../request';
 import { titlesOf, useSchema } from '../resources';
 import { celsius, readNumber, written } from '../units';
+import { ModelChoice } from './model_choice';
 import { Swatch } from './swatch';
 
 interface ConditionsProps {
@@ -82,16 +83,7 @@ export function Conditions({ request, onChange, lubricants, gearSets, violations
           {number('last', 'to', 'last_speed_kilometres_per_hour')}
           {number('step', 'by', 'speed_step_kilometres_per_hour')}
         </div>
-        <details open={request.options.length > 0}>
-          <summary>Model options</summary>
-          {OPTIONS.map(([name, words]) => (
-            <label key={name} class="choice">
-              <input type="checkbox" checked={request.options.includes(name)}
-                onChange={() => onChange({ ...request, options: request.options.includes(name) ? request.options.filter((each) => each !== name) : [...request.options, name] })} />
-              <span>{words}</span>
-            </label>
-          ))}
-        </details>
+        <ModelChoice request={request} onChange={onChange} />
       </fieldset>
     </>
   );

@@ -3,6 +3,7 @@ import type { Spec } from '../charts/spec';
 import { remarksOf, type Curve } from '../curve';
 import { idOf, revisionIdOf } from '../format';
 import { sumpText } from '../units';
+import { remarkLines } from '../validity';
 import { TakeAway } from './take_away';
 import { commandsOf, inputsOf, requestOfSimulations } from '../request';
 
@@ -19,7 +20,7 @@ function footerOf(curves: Curve[]): string[] {
     `Gear set ${revisionIdOf(first.gear_set_revision)}, surface ${revisionIdOf(first.surface_revision)}, vehicle ${revisionIdOf(first.vehicle_revision)}, ` +
       `sump ${[...new Set(curves.map((each) => sumpText(each.simulation.sump_temperature_celsius)))].join(', ')}. Loss of the tooth contact only.`,
     `${first.result?.model_version ?? ''}; inputs ${curves.map((each) => `${revisionIdOf(each.simulation.lubricant_revision)} ${each.simulation.input_hash?.slice(0, 12)}`).join(', ')}`,
-    ...remarksOf(curves).map((each) => (each.where ? `${each.words}, at ${each.where}` : each.words)),
+    ...remarkLines(remarksOf(curves)),
     ...(curves.some((each) => each.branchEnds.some((end) => end)) ? ['A line breaks where its branch of steady states ends: the response jumps.'] : []),
   ];
 }

@@ -4,8 +4,8 @@ import { idOf, revisionIdOf, rounded } from '../format';
 import { Store, useStore } from '../store';
 import { isInRpm, shown, units } from '../units';
 import { QUANTITIES, type Quantity } from '../quantities';
-import { figureOf, type ComparedGroup } from '../uncertainty';
-import { finite, Num } from './num';
+import { figureOf, unstatedOf, type ComparedGroup } from '../uncertainty';
+import { finite, UncertainNum } from './num';
 import { Swatch } from './swatch';
 
 interface ReadOutProps {
@@ -17,14 +17,12 @@ interface ReadOutProps {
   onOpen: (curve: Curve, speed: number) => void;
 }
 
-/** A value of a curve: with the uncertainty of the inputs if there is one, else rounded by the solver's error. */
+/** A value of a curve: with the interval by its inputs if there is one, else rounded by the solver's error. */
 function CurveNum({ curve, row, quantity, column, groups }: { curve: Curve; row: number; quantity: Quantity; column: string; groups?: ComparedGroup[] | undefined }) {
   const value = curve.columns[column]![row] ?? null;
   const relative = curve.columns['estimated_relative_error']![row];
-  const spread = finite(figureOf(groups, curve.simulation, column, row)?.standard_uncertainty);
-  const data = { 'data-column': column, 'data-simulation': curve.simulation.name, 'data-row': row };
-  if (spread !== null && spread > 0) return <Num value={value} error={spread} unit={quantity.unit} withError data={data} />;
-  return <Num value={value} error={value === null || relative == null ? undefined : value * relative} unit={quantity.unit} data={data} />;
+  const { value: _, ...errors } = figureOf(groups, curve.simulation, column, row) ?? { solver_error: value === null || relative == null ? undefined : value * relative };
+  return <UncertainNum figure={{ ...errors, value }} unit={quantity.unit} data={{ 'data-column': column, 'data-simulation': curve.simulation.name, 'data-row': row }} />;
 }
 
 /** The speed at which a column of any curve is greatest. */
@@ -107,6 +105,7 @@ export function ReadOut({ curves, titles, groups, speed, shownQuantity, onOpen }
   const columns = QUANTITIES.flatMap((quantity) => quantity.columns.map((column, k) => ({ quantity, column, k })));
   const torque = finite(curves[0]!.columns['pinion_torque_newton_metres']![lines[0]!.rows.get(at) ?? -1]);
   const every = useMemo(() => <EverySpeed lines={lines} speeds={speeds} quantity={shownQuantity} groups={groups} />, [lines, speeds, shownQuantity, groups]);
+  const unstated = unstatedOf(groups).map((each) => shortTitle(titles.get(idOf(each)) ?? revisionIdOf(each)));
   const errors = lines.map(({ curve, rows }) => curve.columns['estimated_relative_error']![rows.get(at) ?? -1]);
   return (
     <section class="read-out" aria-labelledby="read-out-title">
@@ -146,7 +145,7 @@ export function ReadOut({ curves, titles, groups, speed, shownQuantity, onOpen }
           </tbody>
         </table>
       </div>
-      <p class="muted small">{errorText(errors)}</p>
+      <p class="muted small">{errorText(errors)}{groups && ' Beneath a value: what its inputs leave, with 95 %.'}{unstated.length > 0 && ` Uncertainty not stated: ${unstated.join(', ')}.`}</p>
       {every}
     </section>
   );

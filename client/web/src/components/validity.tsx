@@ -3,6 +3,11 @@ import { worstOf, type Level, type Remark } from '../validity';
 
 const WORDS = { ok: 'Within the validated range', note: 'Not compared with validated ranges', caution: 'With caution', outside: 'Do not rank by this' };
 
+/** What the figures leave out, in the words of the service. */
+export function NotIncluded({ text }: { text: string | undefined }) {
+  return text ? <p class="small not-included">{text}</p> : null;
+}
+
 /** A circle, a triangle or a square: shape and words say what the color says. */
 function Light({ level }: { level: Level | 'ok' }) {
   return (
@@ -30,7 +35,7 @@ export function Validity({ remarks, isOpen = false, isChecked = true, children }
       <ul>
         {remarks.map((each) => (
           <li key={`${each.code} ${each.where} ${each.message}`} class={each.level}>
-            <Light level={each.level} /> <span>{each.words}{each.where && `, at ${each.where}`}. <span class="muted">{each.message}</span></span>
+            <Light level={each.level} /> <span>{each.words}{each.where && `, at ${each.where}`}. <span class="muted">{each.message}</span> <span class="code">{each.code}</span></span>
           </li>
         ))}
         {children}

@@ -3,7 +3,7 @@ import { ApiError, change, get, session, url } from '../api/client';
 import type { AppendCandidatesRequest, Campaign, Lubricant, Surface } from '../api/types';
 import { conditionsOf } from '../campaign';
 import { characterise, parametersOf, unitsOf, type Bases, type Present } from '../candidates';
-import { inputWords } from '../comparison';
+import { inputWords } from '../inputs';
 import { Missing } from '../components/missing';
 import { Failure, Notice } from '../components/notice';
 import { idOf } from '../format';

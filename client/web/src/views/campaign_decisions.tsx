@@ -7,17 +7,18 @@ import type {
 import { usualFigure, type Column, type Range, type Rows } from '../campaign';
 import { Scatter, type Dot } from '../charts/scatter';
 import { Bars } from '../components/bars';
-import { Entry } from '../components/entry';
 import { Failure, Notice } from '../components/notice';
 import { finite, Num } from '../components/num';
-import { inputWords } from '../comparison';
+import { inputWords } from '../inputs';
 import { idOf, rounded } from '../format';
-import { useAnswer } from '../resources';
+import { useAnswer, type Loaded } from '../resources';
 import { address, go, place, set } from '../router';
 import { useStore } from '../store';
 import { shown, units, type Unit } from '../units';
+import { remarkOf, type Remark } from '../validity';
 
 const RANKED = 100; // candidates of a ranking that are asked for
+const MOST_LABELS = 8; // candidates that are named in a warning
 const MOST_BEATEN = 5000; // candidates that are drawn behind a front
 
 export interface DecisionProps {
@@ -25,6 +26,7 @@ export interface DecisionProps {
   rows: Rows;
   ranges: Range[];
   version: number; // of the rows
+  ranking: Loaded<RankCandidatesResponse | null>;
   chosen: number | null; // number of a candidate
   onChoose: (candidate: number | null) => void;
 }
@@ -98,68 +100,92 @@ function Counts({ of, words }: { of: { excluded?: number; refused?: number; miss
   );
 }
 
-/** The best candidates, in the order of the service: ties are called ties. */
-export function Ranking({ campaign, rows, ranges, version, chosen, onChoose }: DecisionProps) {
+/** The ranking by the objective of the address, with the warnings of its rows. */
+export function useRanking(campaign: Campaign, rows: Rows, ranges: Range[], version: number): Loaded<RankCandidatesResponse | null> {
+  const { query } = useStore(place);
+  const stated = statedOf(query.get('goal'), objectiveColumns(rows), usualFigure(campaign));
+  return useAnswer<RankCandidatesResponse>(`${campaign.name}:rank`, stated && { objective: stated.objective, constraints: constraintsOf(ranges), count: RANKED }, version);
+}
+
+/** The warnings of a ranking with the candidates concerned. */
+export function rankingRemarks(answer: RankCandidatesResponse | null | undefined): Remark[] {
+  const labels = new Map((answer?.candidates ?? []).map((each) => [each.candidate ?? 0, each.label || String(each.candidate ?? 0)]));
+  return (answer?.warnings ?? []).map((warning) => {
+    const all = warning.candidates ?? [];
+    const isOfAll = all.length >= labels.size;
+    return remarkOf(warning, isOfAll ? '' : `${all.slice(0, MOST_LABELS).map((each) => labels.get(each) ?? each).join(', ')}${all.length > MOST_LABELS ? ` and ${all.length - MOST_LABELS} more` : ''}`);
+  });
+}
+
+/** The best candidates, in the order of the service: ties are called ties, and where a warning forbids a verdict there is none. */
+export function Ranking({ campaign, rows, ranking: answer, chosen, onChoose }: DecisionProps) {
   const { query } = useStore(place);
   useStore(units);
   const columns = objectiveColumns(rows);
   const stated = statedOf(query.get('goal'), columns, usualFigure(campaign));
-  const percent = Math.max(0, Number(query.get('du') ?? 0) || 0);
-  const answer = useAnswer<RankCandidatesResponse>(`${campaign.name}:rank`, stated && {
-    objective: stated.objective, constraints: constraintsOf(ranges), count: RANKED,
-    ...(percent > 0 ? { uncertainties: rows.columns.filter(isParameter).map((each) => ({ parameter: each.name, relative_uncertainty: percent / 100 })) } : {}),
-  }, version);
   if (!stated) return <p class="muted">No rows are computed yet.</p>;
   const found = answer.value?.candidates ?? [];
+  const refused = answer.value?.refused_candidates ?? [];
   const { unit } = stated.column;
   const uncertain = [...(answer.value?.own_uncertain_parameters ?? []), ...(answer.value?.shared_uncertain_parameters ?? [])];
+  const error = Math.max(0, ...found.map((each) => finite(each.solver_error) ?? 0));
   return (
     <section aria-label="Ranking" class={answer.isStale ? 'stale' : ''}>
       <ObjectiveChoice words="Good is" setting="goal" stated={stated} columns={columns} />
-      <label class="inline">Standard uncertainty of the candidates' parameters, %
-        <Entry class="short" inputMode="decimal" value={String(percent)} onChange={(event) => set({ du: event.currentTarget.value.replace(',', '.') || undefined })} />
-      </label>
       {answer.error !== undefined && <Failure error={answer.error} onRetry={answer.reload} />}
-      {answer.value && <Counts of={answer.value} words={[[answer.value.ranked, 'candidates are ranked']]} />}
+      {answer.value && <Counts of={answer.value} words={[[answer.value.ranked, 'candidates are ranked'], ...((answer.value.withheld ?? 0) > 0 ? [[answer.value.withheld, 'of them without a verdict'] as [number, string]] : [])]} />}
       {found.length > 0 && <RankTable found={found} column={stated.column} chosen={chosen} onChoose={onChoose} />}
       <p class="small">
-        Rows with 1= cannot be told apart from the best one. Bars reach one standard uncertainty by the inputs to both sides.{' '}
-        {uncertain.length === 0 ? 'No input has a stated uncertainty: the error of the solver decides alone.' : `Uncertain: ${uncertain.map((each) => inputWords(each)).join('; ')}.`}
+        Rows with 1= cannot be told apart from the best one: the 95&nbsp;% interval of the difference holds 0. Bars reach 1.96 standard uncertainties by the inputs to both sides.{' '}
+        {uncertain.length === 0 ? 'No input has a stated uncertainty: there is no probability.' : `Uncertain: ${uncertain.map((each) => inputWords(each)).join('; ')}.`}
+        {error > 0 && <> Error of the solver: at most <Num value={error} unit={{ ...unit, offset: 0 }} error={error} /> {unit.symbol}.</>}
         {unit.symbol && ` Values in ${unit.symbol}.`}
       </p>
+      {refused.length > 0 && (
+        <section aria-label="Refused candidates">
+          <h2>Without a figure</h2>
+          <ul>{refused.map((each) => <li key={each.candidate}>{each.label || (each.candidate ?? 0)}: {each.refusal?.message} <span class="code">{each.refusal?.reason}</span></li>)}</ul>
+        </section>
+      )}
     </section>
   );
 }
 
+const NORMAL_95 = 1.96; // standard deviations of a normal distribution that hold 95 % to both sides
+
 function RankTable({ found, column, chosen, onChoose }: { found: RankedCandidate[]; column: Column; chosen: number | null; onChoose: (candidate: number | null) => void }) {
   const { unit } = column;
-  const ends = found.flatMap((each) => {
-    const spread = finite(each.comparison?.standard_uncertainty) ?? 0;
-    return [each.value! - spread, each.value! + spread];
-  });
+  const reachOf = (each: RankedCandidate) => NORMAL_95 * (finite(each.comparison?.standard_uncertainty) ?? 0);
+  const ends = found.flatMap((each) => [each.value! - reachOf(each), each.value! + reachOf(each)]);
   const [low, high] = [Math.min(...ends), Math.max(...ends)];
   const at = (value: number) => `${2 + (96 * (value - low)) / (high - low || 1)}%`;
   return (
     <div class="scroll rows" tabIndex={0} role="region" aria-label="Ranking">
       <table class="ranking">
-        <thead><tr><th class="number">Rank</th><th>Candidate</th><th class="number">{column.label}<small>{unit.symbol}&nbsp;</small></th><th><span class="hidden">Interval</span></th><th class="number">Worse than the best with<small>%</small></th></tr></thead>
+        <thead>
+          <tr>
+            <th class="number">Rank</th><th>Candidate</th><th class="number">{column.label}<small>{unit.symbol}&nbsp;</small></th><th class="number">Standard uncertainty<small>{unit.symbol}&nbsp;</small></th>
+            <th><span class="hidden">Interval</span></th><th class="number">Worse than the best with<small>%</small></th>
+          </tr>
+        </thead>
         <tbody>
           {found.map((each, k) => {
             const { comparison } = each;
             const isTied = comparison?.tied === true && found[1]?.comparison?.tied === true;
-            const spread = finite(comparison?.standard_uncertainty) ?? 0;
+            const spread = finite(comparison?.standard_uncertainty);
             return (
               <tr key={each.candidate} class={`${each.candidate === chosen ? 'chosen' : ''} ${isTied ? 'tied' : ''}`}>
-                <td class="number">{isTied ? '1=' : k + 1}</td>
+                <td class="number">{each.verdict_withheld ? '–' : isTied ? '1=' : k + 1}</td>
                 <th scope="row"><button class="sort" aria-pressed={each.candidate === chosen} onClick={() => onChoose(each.candidate === chosen ? null : each.candidate ?? 0)}>{each.label || (each.candidate ?? 0)}</button></th>
-                <td class="number"><Num value={each.value} error={spread > 0 ? spread : each.solver_error} unit={unit} withError={spread > 0} /></td>
+                <td class="number"><Num value={each.value} error={spread || each.solver_error} unit={unit} /></td>
+                <td class="number">{spread ? <Num value={spread} error={spread} unit={{ ...unit, offset: 0 }} /> : ''}</td>
                 <td class="bar-cell">
                   <svg width="100%" height="18" aria-hidden="true" class="interval">
-                    <line x1={at(each.value! - spread)} x2={at(each.value! + spread)} y1="9" y2="9" />
-                    <circle cx={at(each.value!)} cy="9" r="4" class={isTied ? 'hollow' : ''} />
+                    <line x1={at(each.value! - reachOf(each))} x2={at(each.value! + reachOf(each))} y1="9" y2="9" />
+                    <circle cx={at(each.value!)} cy="9" r="4" class={isTied || each.verdict_withheld ? 'hollow' : ''} />
                   </svg>
                 </td>
-                <td class="number">{comparison && k > 0 ? <Probability value={comparison.worse_probability} /> : ''}</td>
+                <td class="number">{each.verdict_withheld ? 'verdict withheld' : comparison && k > 0 ? <Probability value={comparison.worse_probability} /> : ''}</td>
               </tr>
             );
           })}
@@ -176,6 +202,9 @@ function Probability({ value }: { value: number | undefined }) {
   if (number < 0.01 || number > 0.99) return <span>{number < 0.01 ? 'below 1' : 'above 99'}</span>;
   return <span data-value={number} data-factor={100} data-offset={0}>{Math.round(100 * number)}</span>;
 }
+
+/** Candidates with a row whose verdict a warning withholds. */
+const withheldCandidates = (rows: Rows): Set<number> => new Set(rows.candidates.filter((_, row) => rows.isWithheld[row]));
 
 /** Two objectives against each other: candidates that none beats in both are marked. */
 export function Pareto({ campaign, rows, ranges, version, chosen, onChoose }: DecisionProps) {
@@ -199,6 +228,7 @@ export function Pareto({ campaign, rows, ranges, version, chosen, onChoose }: De
   }, [front.value, inUnits]);
   if (!first || !second) return <p class="muted">No rows are computed yet.</p>;
   const members = front.value?.candidates ?? [];
+  const withheld = withheldCandidates(rows);
   return (
     <section aria-label="Pareto front" class={front.isStale ? 'stale' : ''}>
       <ObjectiveChoice words="Good is" setting="goal" stated={first} columns={columns} />
@@ -216,9 +246,9 @@ export function Pareto({ campaign, rows, ranges, version, chosen, onChoose }: De
             <tbody>
               {members.slice(0, RANKED).map((each) => (
                 <tr key={each.candidate} class={each.candidate === chosen ? 'chosen' : ''}>
-                  <th scope="row"><button class="sort" onClick={() => onChoose(each.candidate ?? 0)}>{each.label || (each.candidate ?? 0)}</button></th>
-                  <td class="number"><Num value={each.first_value} unit={first.column.unit} error={0.001 * Math.abs(each.first_value ?? 0)} /></td>
-                  <td class="number"><Num value={each.second_value} unit={second.column.unit} error={0.001 * Math.abs(each.second_value ?? 0)} /></td>
+                  <th scope="row"><button class="sort" onClick={() => onChoose(each.candidate ?? 0)}>{each.label || (each.candidate ?? 0)}</button>{withheld.has(each.candidate ?? 0) && <small>verdict withheld</small>}</th>
+                  <td class="number"><Num value={each.first_value} unit={first.column.unit} /></td>
+                  <td class="number"><Num value={each.second_value} unit={second.column.unit} /></td>
                 </tr>
               ))}
             </tbody>
@@ -264,7 +294,7 @@ export function Effects({ campaign, rows, ranges, version }: DecisionProps) {
           <Bars label="Main effects" less={`less ${stated.column.label.toLowerCase()}`} more={`more ${stated.column.label.toLowerCase()}`}
             bars={(answer.value.effects ?? []).map((each, k) => ({
               key: `${k}`,
-              label: <>{labelOf(each.column!)} <small>{valueText(each.column!, each.from_candidate)} → {valueText(each.column!, each.to_candidate)}</small></>,
+              label: <>{labelOf(each.column!)} <small>{valueText(each.column!, each.from_candidate)} → {valueText(each.column!, each.to_candidate)}{(each.collinear_columns ?? []).length > 0 && `; not separable from ${each.collinear_columns!.map(labelOf).join(', ')}`}</small></>,
               value: shown(each.effect ?? 0, unit), low: shown(each.effect_minimum ?? 0, unit), high: shown(each.effect_maximum ?? 0, unit),
               text: <><Num value={each.effect} unit={unit} error={Math.abs((each.effect_maximum ?? 0) - (each.effect_minimum ?? 0)) / 4 || undefined} isSigned /> {unit.symbol}</>,
             }))} />

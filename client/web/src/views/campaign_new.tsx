@@ -2,14 +2,16 @@ import { useMemo, useState } from 'preact/hooks';
 import { ApiError, change, get, session, url } from '../api/client';
 import type { Campaign, ListSurfacesResponse, Lubricant, Surface } from '../api/types';
 import { characterise, parametersOf, unitsOf, type Bases } from '../candidates';
-import { inputWords } from '../comparison';
+import { inputWords } from '../inputs';
 import { Entry } from '../components/entry';
+import { PresetChoice } from '../components/model_choice';
 import { Failure, Notice } from '../components/notice';
 import { TakeAway } from '../components/take_away';
 import { shortTitle } from '../curve';
 import { designBody, designProblems, USUAL_DESIGN, type Design } from '../design';
 import { idOf } from '../format';
 import { labelsOf } from '../labels';
+import { modelBodyOf, modelQueryOf, modelRequestOf } from '../model';
 import { useGearSets, useLoaded, useLubricants, useSchema } from '../resources';
 import { address, go, place, set } from '../router';
 import { useStore } from '../store';
@@ -62,6 +64,7 @@ export function NewCampaign() {
 
   const [speeds, sumps] = [numbersOf(speedText), numbersOf(sumpText)];
   const hasContact = query.get('contact') === '1';
+  const { preset } = modelRequestOf(query);
   const varied = kind === 'design' ? design.factors.map((each) => each.parameter)
     : kind === 'table' ? state.columns.flatMap(({ role }) => (role.startsWith('parameter:') ? [role.slice('parameter:'.length)] : [])) : [];
   const by = wordsOf(query.get('by')).filter((each) => varied.includes(each));
@@ -76,7 +79,7 @@ export function NewCampaign() {
     const body: Campaign = {
       gear_set: `gearSets/${gear}`, surface: `surfaces/${surface}`,
       conditions: sumps.flatMap((sump) => speeds.map((speed) => ({ speed_kilometres_per_hour: speed, sump_temperature_celsius: sump }))),
-      contact_figures: hasContact, elasticity_parameters: by, labels: labelsOf(labels),
+      contact_figures: hasContact, elasticity_parameters: by, labels: labelsOf(labels), ...modelBodyOf({ preset, options: [] }),
     };
     // Without a base, the first one of candidates that are lubricants is it.
     if (kind === 'table' || kind === 'design') body.lubricant = `lubricants/${base}`;
@@ -154,6 +157,7 @@ export function NewCampaign() {
           {kind === 'fluids' || kind === 'filter' ? <p class="small">Each candidate is a fluid as it is; all have the pressure law of the first.</p> : select('base', 'Base fluid', lubricants.value)}
           {select('gear', 'Gear set', gearSets.value)}
           {select('surface', 'Surface', surfaces.value)}
+          <PresetChoice preset={preset} onChange={(next) => set(modelQueryOf({ preset: next, options: [] }))} />
         </fieldset>
         <fieldset>
           <legend>Conditions: each speed at each sump</legend>
@@ -208,9 +212,6 @@ export function NewCampaign() {
         {kind === 'table' && !state.table && <Intake onTake={state.take} hasExample />}
         {kind === 'table' && state.table && (
           <>
-            {state.candidates && state.candidates.measurements.length > 0 && (
-              <p class="small">The service estimates what a data sheet does not state, as for an oil that is entered, with the base oil of the base fluid.</p>
-            )}
             {state.columns.length > 0 && <TableForm table={state.table} columns={state.columns} parameters={parameters} unitsOf={(role) => unitsOf(role, constraints)} problems={problems} onChange={state.choose} />}
             <button type="button" onClick={() => state.take(null)}>Take the table away</button>
           </>

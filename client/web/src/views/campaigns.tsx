@@ -12,17 +12,18 @@ import { Failure, Notice } from '../components/notice';
 import { Labels } from '../components/labels';
 import { Num } from '../components/num';
 import { Swatch } from '../components/swatch';
-import { Validity } from '../components/validity';
+import { NotIncluded, Validity } from '../components/validity';
 import { TakeAway } from '../components/take_away';
 import { shortTitle } from '../curve';
 import { ago, idOf, revisionIdOf, rounded } from '../format';
-import { titlesOf, useLoaded, useLubricants } from '../resources';
+import { titlesOf, useLoaded, useLubricants, useSchema } from '../resources';
 import { filterOfLabel } from '../labels';
+import { modelOf } from '../model';
 import { address, place, set } from '../router';
 import { useStore } from '../store';
 import { readNumber, shown, sumpText, units, written } from '../units';
 import { AppendCandidates } from './campaign_append';
-import { Effects, Pareto, Promote, Ranking } from './campaign_decisions';
+import { Effects, Pareto, Promote, Ranking, rankingRemarks, useRanking } from './campaign_decisions';
 import { NewCampaign } from './campaign_new';
 
 const PAGE = 100;
@@ -36,7 +37,7 @@ const ENDED = ['SUCCEEDED', 'FAILED', 'CANCELLED'];
 /** What lists show of a campaign. */
 const LISTED = 'name,display_name,state,stop,lubricant,candidates,rig,points,points_done,points_refused,labels,create_time';
 /** What the page of a campaign shows; values of its candidates come with its rows. */
-const SHOWN = `${LISTED},conditions,refusals,lubricant_revision,gear_set_revision,surface_revision,vehicle_revision`;
+const SHOWN = `${LISTED},conditions,model_options,refusals,lubricant_revision,gear_set_revision,surface_revision,vehicle_revision`;
 const SHOWN_OF_CANDIDATES = `${SHOWN},candidate_columns.path,candidate_attributes.name,candidate_attributes.texts`;
 
 export function Campaigns() {
@@ -186,7 +187,9 @@ function CampaignPage({ name }: { name: string }) {
       clearTimeout(timer);
     };
   }, [loaded.value]);
-  const rows = useLoaded((signal) => (loaded.value ? readRows(loaded.value, signal) : Promise.resolve(undefined)), `${name} ${loaded.value ? version : ''}`);
+  const constraints = useSchema().value?.constraints;
+  const rows = useLoaded((signal) => (loaded.value && constraints ? readRows(loaded.value, constraints, signal) : Promise.resolve(undefined)),
+    `${name} ${loaded.value && constraints ? version : ''}`);
   if (loaded.error !== undefined) return (loaded.error as { status?: number }).status === 404 ? <Missing /> : <Failure error={loaded.error} onRetry={loaded.reload} />;
   if (isDeleted) return <Notice kind="caution">The campaign was deleted.</Notice>;
   if (!campaign) return <p class="muted">Loading …</p>;
@@ -201,6 +204,7 @@ function CampaignPage({ name }: { name: string }) {
             {campaign.candidates} candidates like {revisionIdOf(campaign.lubricant_revision)} at {conditionsOf(campaign)} condition{conditionsOf(campaign) === 1 ? '' : 's'};{' '}
             {campaign.rig ? `rig, ${campaign.surface_revision ? revisionIdOf(campaign.surface_revision) : 'smooth specimens'}`
               : `${revisionIdOf(campaign.gear_set_revision)}, ${revisionIdOf(campaign.surface_revision)}, ${revisionIdOf(campaign.vehicle_revision)}`}
+            {modelOf(campaign.model_options).preset === 'PAPER' && '; model of the paper'}
           </p>
           <Labels of="campaigns" labels={campaign.labels} />
         </div>
@@ -226,7 +230,7 @@ function CampaignPage({ name }: { name: string }) {
 
 function Downloads({ campaign, rows }: { campaign: Campaign; rows: Rows }) {
   const id = idOf(campaign.name);
-  const columns = ['candidate', 'condition', 'refusal_number', ...rows.columns.map((each) => each.name)];
+  const columns = ['candidate', 'condition', 'refusal_number', ...(rows.isWithheld.length > 0 ? ['verdict_withheld', 'warning_bits'] : []), ...rows.columns.map((each) => each.name)];
   return (
     <TakeAway name={`campaign-${id}`} requests={{ name: campaign.name, columns }} commands={[`tribodyn campaigns columns ${id} --output csv`]}>
       <a class="button" download={`campaign-${id}.csv`} href={url(`${campaign.name}:read`, { alt: 'csv', columns })}>All rows as CSV</a>
@@ -256,7 +260,8 @@ function Results({ campaign, rows, version }: { campaign: Campaign; rows: Rows; 
   const chosen = query.has('c') ? Number(query.get('c')) : null;
   const chosenRow = chosen === null ? null : all.find((row) => rows.candidates[row] === chosen) ?? null;
   const choose = (row: number | null) => set({ c: row === null ? undefined : String(rows.candidates[row]) });
-  const decision = { campaign, rows, ranges, version, chosen, onChoose: (candidate: number | null) => set({ c: candidate === null ? undefined : String(candidate) }) };
+  const ranking = useRanking(campaign, rows, ranges, version);
+  const decision = { campaign, rows, ranges, version, ranking, chosen, onChoose: (candidate: number | null) => set({ c: candidate === null ? undefined : String(candidate) }) };
   const shownColumns = useMemo(() => rows.columns.filter((each) => varies(each, all) || each.name === usualFigure(campaign)), [rows, all]);
   return (
     <>
@@ -290,9 +295,10 @@ function Results({ campaign, rows, version }: { campaign: Campaign; rows: Rows; 
       <Ranges columns={shownColumns} ranges={ranges} onRange={setRange} />
       {chosenRow !== null && <Candidate campaign={campaign} rows={rows} row={chosenRow} onLeave={() => choose(null)} />}
       <Refusals campaign={campaign} />
-      <Validity remarks={[]} isChecked={false}>
-        <li class="note">Rows of campaigns have no warnings. Make a candidate a fluid: its curve says where laws leave their ranges.</li>
+      <Validity remarks={rankingRemarks(ranking.value)} isChecked={ranking.value != null}>
+        <li class="note">A warning that withholds a verdict holds for a candidate if one of its conditions has it. Make a candidate a fluid: its curve says at which speeds.</li>
       </Validity>
+      <NotIncluded text={ranking.value?.not_included} />
     </>
   );
 }
@@ -326,7 +332,7 @@ function Table({ rows, columns, kept, order, chosen, onChoose }: {
           <tbody>
             {kept.slice(0, count).map((row) => (
               <tr key={row} class={row === chosen ? 'chosen' : ''}>
-                <th scope="row"><button class="sort" aria-pressed={row === chosen} onClick={() => onChoose(row === chosen ? null : row)}>{rows.candidates[row]}</button></th>
+                <th scope="row"><button class="sort" aria-pressed={row === chosen} onClick={() => onChoose(row === chosen ? null : row)}>{rows.candidates[row]}</button>{rows.isWithheld[row] && <small>verdict withheld</small>}</th>
                 {rows.texts.map((each) => <td key={each.name}>{each.values[rows.candidates[row]!]}</td>)}
                 {columns.map((column) => (
                   <td key={column.name} class="number"><Num value={column.values[row]} unit={column.unit} error={errorOf(rows, column, row)} /></td>
@@ -483,6 +489,7 @@ function Candidate({ campaign, rows, row, onLeave }: { campaign: Campaign; rows:
     <section class="read-out" aria-labelledby="candidate">
       <div class="heading"><h2 id="candidate">Candidate {candidate}</h2><button onClick={onLeave}>Leave</button></div>
       {refusal && <Notice kind="caution">{refusal.message}</Notice>}
+      {rows.isWithheld[row] && <Notice kind="caution">A warning withholds the verdict on this row: do not rank by it.</Notice>}
       <Promote key={candidate} campaign={campaign} rows={rows} candidate={candidate} />
       <dl class="facts pairs">
         {rows.texts.map((each) => <><dt>{each.name}</dt><dd>{each.values[candidate]}</dd></>)}

@@ -1,6 +1,6 @@
 import type { Constraint } from '../api/types';
 import { baseValue, type Bases } from '../candidates';
-import { inputWords } from '../comparison';
+import { inputWords } from '../inputs';
 import { Entry } from '../components/entry';
 import { Num } from '../components/num';
 import { easyUnit, factorUnit, factorUnits, METHODS, type Design, type DesignProblem, type Factor } from '../design';

@@ -4,7 +4,7 @@ import type { ApiError, Violation } from '../api/client';
 import type { Campaign, Constraint } from '../api/types';
 import { conditionsOf } from '../campaign';
 import { candidatesOf, problemOf, roleOf, tableOf, unitOfHeader, unitsOf, type Bases, type Candidates, type Present, type Problem, type Role, type Table, type TableColumn } from '../candidates';
-import { inputWords } from '../comparison';
+import { inputWords } from '../inputs';
 import { Num } from '../components/num';
 import { DATA_SHEET } from '../lubricant_fields';
 import { plain, scaled, type Unit } from '../units';
@@ -106,7 +106,8 @@ export function Intake({ onTake, hasExample = false }: { onTake: (source: Source
         <textarea rows={6} spellcheck={false} onInput={(event) => event.currentTarget.value.trim() !== '' && onTake({ name: 'pasted', text: event.currentTarget.value })} />
       </label>
       <section class="small">
-        <p>A row for each candidate. A column is a parameter of the lubricant or of the surface, with its unit in brackets, e.g. <code>alpha* [1/GPa]</code>; or what a data sheet says, e.g. <code>KV40</code>; or the candidates' <code>name</code>. Every other column, such as an additive or a cost, rides along.</p>
+        <p>A row for each candidate. A column is a parameter of the lubricant or of the surface, with its unit in brackets, e.g. <code>alpha* [1/GPa]</code>; or the candidates' <code>name</code>. Every other column, such as an additive or a cost, rides along.</p>
+        <p>Oils known by their data sheets are fluids: enter or import them, and screen them as fluids, with the uncertainty of what is estimated.</p>
         {hasExample && <button type="button" onClick={() => onTake({ name: 'example', text: EXAMPLE })}>Show an example</button>}
       </section>
     </>
@@ -153,7 +154,7 @@ export function TableForm({ table, columns, parameters, unitsOf: allowedUnits, p
                   <optgroup label="Parameter of the lubricant">{group('parameter', inputWords, parameters.filter((each) => each.startsWith('lubricant.')))}</optgroup>
                   <optgroup label="Parameter of the surface">{group('parameter', inputWords, parameters.filter((each) => each.startsWith('surface.')))}</optgroup>
                   <optgroup label="Data sheet">{DATA_SHEET.map((each) => <option key={each.field} value={`measured:${each.field}`}>{each.label}</option>)}</optgroup>
-                  <optgroup label="Standard uncertainty">{group('uncertainty', (path) => `± ${inputWords(path)}`, parameters)}</optgroup>
+                  <optgroup label="Standard uncertainty">{group('uncertainty', inputWords, parameters)}</optgroup>
                 </select>
               </td>
             ))}

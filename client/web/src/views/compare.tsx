@@ -2,31 +2,32 @@ import type { ComponentChildren } from 'preact';
 import { useMemo, useState } from 'preact/hooks';
 import { ApiError, get, url } from '../api/client';
 import type {
-  CauseInteraction, ComparedDifference, ComparedLubricant, ComparePointsResponse, DifferenceCause, DifferenceExplanation,
+  CauseInteraction, ComparedDifference, ComparedLubricant, ComparePointsResponse, DecidingInput, DifferenceCause, DifferenceExplanation,
   DrawnFigure, ExplainPointsResponse, InputShare, Lubricant,
 } from '../api/types';
 import { CurveChart } from '../charts/curve_chart';
 import { Bars, type Bar } from '../components/bars';
 import { Entry } from '../components/entry';
-import { finite, Num } from '../components/num';
+import { ModelChoice } from '../components/model_choice';
+import { finite, Interval, isUncertain, Num, spreadOf, UncertainNum } from '../components/num';
 import { Failure, Notice } from '../components/notice';
 import { Swatch } from '../components/swatch';
-import { Validity } from '../components/validity';
+import { NotIncluded, Validity } from '../components/validity';
 import { csvOf, TakeAway } from '../components/take_away';
 import {
   COMPARED, compareBodyOf, compareCommandsOf, comparedSpeedUnit, compareQueryOf, compareRequestOf, differenceSpec, explainBodyOf, figuresSpec, GROUPS,
-  inputWords, POINTS, speedLabelOf, speedsOf, speedText, type CompareRequest,
+  comparedRemarks, POINTS, speedLabelOf, speedsOf, speedText, VERDICTS, verdictWords, type CompareRequest,
 } from '../comparison';
+import { inputUnit, inputWords } from '../inputs';
 import { shortTitle } from '../curve';
 import { idOf, revisionIdOf } from '../format';
 import { celsius, plain, readNumber, RPM, shown, sumpText, units, watts, written, type Unit } from '../units';
 import { ALL_FIELDS, constraintOf, unitOf, valueOf, type Field } from '../lubricant_fields';
 import { PROVENANCE } from '../provenance';
-import { OPTIONS } from '../request';
 import { titlesOf, useAnswer, useGearSets, useLoaded, useLubricants, useSchema } from '../resources';
 import { address, go, place, set } from '../router';
 import { useStore } from '../store';
-import { remarksOnce } from '../validity';
+import { remarkLines, remarkOf } from '../validity';
 
 const SHOWN_SHARES = 6;
 const PERCENT: Unit = { symbol: '%', factor: 100, offset: 0 };
@@ -44,8 +45,8 @@ export function Compare() {
   const answer = useAnswer<ComparePointsResponse>('points:compare', isComplete ? compareBodyOf(request) : null);
   const speeds = speedsOf(request);
   const at = query.get('at') === 'mean' ? null : nearest(speeds, Number(query.get('at') ?? 60));
-  const explained = at === null ? speeds : [at];
-  const reasons = useAnswer<ExplainPointsResponse>('points:explain', isComplete ? explainBodyOf(request, explained) : null);
+  const explainedSpeeds = at === null ? speeds : [at];
+  const reasons = useAnswer<ExplainPointsResponse>('points:explain', isComplete ? explainBodyOf(request, explainedSpeeds) : null);
   const change = (next: CompareRequest) =>
     go(address('/compare', { ...compareQueryOf(next), at: query.get('at') ?? undefined, y: query.get('y') ?? undefined }), 'replace');
 
@@ -65,6 +66,8 @@ export function Compare() {
   [answer.value, quantity, titles, inUnits]);
   const row = at === null ? -1 : speeds.indexOf(at);
   const other = lines[1];
+  const explanation = at === null ? reasons.value?.mean : reasons.value?.points?.[0];
+  const explained = (explanation?.warnings ?? []).map((each) => remarkOf(each, 'a combination of properties'));
   const difference = other && (row < 0 ? other.mean_difference : other.differences?.[row]);
 
   return (
@@ -82,10 +85,11 @@ export function Compare() {
           <>
             <div class="heading">
               <Headline difference={other!.mean_difference} names={names} />
-              <TakeAway name="comparison" spec={specs.difference} footer={footerOf(answer.value!, request)}
-                csv={() => tableOf(lines, speeds)} requests={{ compare: compareBodyOf(request), explain: explainBodyOf(request, explained) }}
-                commands={compareCommandsOf(request, explained, project)} link={pinned(request, answer.value!, query)} />
+              <TakeAway name="comparison" spec={specs.difference} footer={[...footerOf(answer.value!, request), ...remarkLines(comparedRemarks(lines, names, speeds, speedUnit))]}
+                csv={() => tableOf(lines, speeds)} requests={{ compare: compareBodyOf(request), explain: explainBodyOf(request, explainedSpeeds) }}
+                commands={compareCommandsOf(request, explainedSpeeds, project)} link={pinned(request, answer.value!, query)} />
             </div>
+            <NotIncluded text={answer.value!.not_included} />
             <Unstated answer={answer.value!} names={names} />
             <figure class="figure" aria-label={`${quantity.label} of both fluids`}>
               <div class="tabs" role="group" aria-label="Quantity">
@@ -97,7 +101,7 @@ export function Compare() {
               <CurveChart spec={specs.figures} height={240} sync="compare" onPick={onPick} />
             </figure>
             <figure class="figure" aria-label="Difference over speed">
-              <figcaption>{names[1]} less {names[0]}: mesh inefficiency, percentage points; hollow where the two cannot be told apart</figcaption>
+              <figcaption>{names[1]} less {names[0]}: mesh inefficiency, percentage points; hollow where there is no verdict</figcaption>
               <CurveChart spec={specs.difference} height={190} sync="compare" onPick={onPick} />
               <p class="axis-title">{xLabel}</p>
             </figure>
@@ -113,16 +117,17 @@ export function Compare() {
                 </label>
               </div>
               {difference && <Verdict difference={difference} names={names} where={at === null ? 'on the mean of all speeds' : `at ${speedText(at, speedUnit)}`}>
-                {torque && <>, where the pinion of {names[0]} takes <Num value={torque.value} error={torque.standard_uncertainty || torque.solver_error} unit={plain('N m')} /> N m at {at} km/h</>}
+                {torque && <>, where the pinion of {names[0]} takes <Num value={torque.value} error={spreadOf(torque)} unit={plain('N m')} /> N m at {at} km/h</>}
               </Verdict>}
               {reasons.error !== undefined && <Failure error={reasons.error} onRetry={reasons.reload} />}
               {reasons.value && reasons.error === undefined && (
-                <Reasons explanation={at === null ? reasons.value.mean : reasons.value.points?.[0]} names={names} />
+                <Reasons explanation={explanation} names={names} />
               )}
             </section>
-            <Validity remarks={remarksOnce((answer.value?.lubricants ?? []).flatMap((each) => (each.points ?? []).flatMap((point) => point.warnings ?? [])))} isChecked={false}>
-              <li class="note">Draws of the inputs are not compared with the ranges of the laws. <a href={address('/curves', { f: `${request.a},${request.b}`, sump: String(request.sump) })}>The curves of both</a> are.</li>
+            <Validity remarks={[...comparedRemarks(lines, names, speeds, speedUnit), ...explained]}>
+              <li class="note">Draws of the inputs are not compared with the ranges of the laws.</li>
             </Validity>
+            {difference && <Deciding difference={difference} lines={lines} titles={names} />}
             {difference && <MeasureNext difference={difference} names={lines} titles={names} />}
             <SpeedTable lines={lines} names={names} speeds={speeds} pinion={speedUnit.symbol === RPM.symbol ? answer.value!.mean_pinion_speed_radians_per_second : undefined} />
             <Inputs a={request.a} b={request.b} names={names} />
@@ -200,20 +205,11 @@ function Form({ request, onChange, lubricants, violations }: FormProps) {
           {number('last', 'to', 'last_speed')}
           {number('step', 'by', 'speed_step')}
         </div>
-        <details open={request.options.length > 0}>
-          <summary>Model options</summary>
-          {OPTIONS.map(([name, words]) => (
-            <label key={name} class="choice">
-              <input type="checkbox" checked={request.options.includes(name)}
-                onChange={() => onChange({ ...request, options: request.options.includes(name) ? request.options.filter((each) => each !== name) : [...request.options, name] })} />
-              <span>{words}</span>
-            </label>
-          ))}
-        </details>
+        <ModelChoice request={request} onChange={onChange} />
       </fieldset>
       <fieldset>
         <legend>Uncertainty</legend>
-        {number('sumpUncertainty', 'Of the sump, ± K', 'sump_temperature_uncertainty')}
+        {number('sumpUncertainty', 'Of the sump, standard, K', 'sump_temperature_uncertainty')}
         {number('correlation', 'Correlation of estimates', 'estimate_correlation')}
         <p class="small">Errors of fluids are those that their data sheets and estimates state.</p>
       </fieldset>
@@ -229,39 +225,68 @@ function Probability({ value }: { value: number | undefined }) {
   return <span><span data-value={number} data-factor={100} data-offset={0}>{Math.round(100 * number)}</span> %</span>;
 }
 
-function Interval({ figure, unit }: { figure: { interval_minimum?: number; interval_maximum?: number; standard_uncertainty?: number; solver_error?: number }; unit: Unit }) {
-  const spread = (finite(figure.standard_uncertainty) ?? 0) > 0 ? figure.standard_uncertainty : figure.solver_error;
-  return <span><Num value={figure.interval_minimum} error={spread} unit={unit} isSigned /> to <Num value={figure.interval_maximum} error={spread} unit={unit} isSigned /></span>;
-}
-
 /** The verdict of the service on the mean of all speeds, in a sentence. */
 function Headline({ difference, names }: { difference: ComparedDifference | undefined; names: string[] }) {
   const [a, b] = names;
   if (!difference?.difference_percent) return <h1>{a} and {b}</h1>;
   const figure = difference.difference_percent;
-  const number = <Num value={figure.value} error={figure.standard_uncertainty || figure.solver_error} unit={POINTS} isSigned withError />;
+  const { verdict } = difference;
   return (
     <div>
       <h1>
-        {difference.verdict === 'LOWER' && <>{b} loses less than {a}: {number} percentage points</>}
-        {difference.verdict === 'HIGHER' && <>{b} loses more than {a}: {number} percentage points</>}
-        {difference.verdict === 'CANNOT_BE_TOLD_APART' && <>{a} and {b} cannot be told apart</>}
+        {verdict === 'LOWER' && <>{b} loses less than {a}</>}
+        {verdict === 'HIGHER' && <>{b} loses more than {a}</>}
+        {verdict !== 'LOWER' && verdict !== 'HIGHER' && verdictWords(verdict, a!, b!)}
       </h1>
       <p class="muted">
-        Mean inefficiency over the speeds, {b} less {a}: 95&nbsp;% interval <Interval figure={figure} unit={POINTS} /> percentage
-        points. Probability that {b} loses less: <Probability value={difference.lower_probability} />.
+        Mean inefficiency over the speeds, {b} less {a}: <Num value={figure.value} error={spreadOf(figure)} unit={POINTS} isSigned /> percentage
+        points; <Certainty difference={difference} name={b!} />
       </p>
     </div>
   );
 }
 
+/** How sure a difference is: its interval and the probability, or why it has none. */
+function Certainty({ difference, name }: { difference: ComparedDifference; name: string }) {
+  const figure = difference.difference_percent;
+  if (difference.verdict === 'UNCERTAINTY_NOT_STATED') return <>uncertainty of the inputs not stated.</>;
+  return (
+    <>
+      {figure && isUncertain(figure) && <>95&nbsp;% interval <Interval figure={figure} unit={POINTS} isSigned /> percentage points.</>}
+      {finite(difference.lower_probability) !== null && <> Probability that {name} loses less: <Probability value={difference.lower_probability} />.</>}
+    </>
+  );
+}
+
+/** What would tell two fluids apart. */
+function Deciding({ difference, lines, titles }: { difference: ComparedDifference; lines: ComparedLubricant[]; titles: string[] }) {
+  const constraints = useSchema().value?.constraints;
+  const inputs = difference.deciding_inputs ?? [];
+  if (inputs.length === 0) return null;
+  return (
+    <p class="deciding">
+      To tell them apart, {difference.all_needed && inputs.length > 1 ? 'all of these must be known better: ' : inputs.length > 1 ? 'one of these must be known better: ' : 'this must be known better: '}
+      {inputs.map((each, k) => {
+        const unit = { ...inputUnit(each.input!, constraints), offset: 0 };
+        return (
+          <span key={`${each.input} ${each.lubricant_revision}`}>
+            {k > 0 && '; '}{inputWords(each.input!)} of {ownerOf(each, lines, titles)}, to{' '}
+            {each.input!.includes(' ') || finite(each.standard_uncertainty) === null ? '' : <>a standard uncertainty of <Num value={each.standard_uncertainty} unit={unit} error={each.standard_uncertainty} /> {unit.symbol}, </>}
+            <Num value={each.factor} unit={plain('')} error={each.factor} /> of the present one
+          </span>
+        );
+      })}.
+    </p>
+  );
+}
+
 function Verdict({ difference, names, where, children }: { difference: ComparedDifference; names: string[]; where: string; children?: ComponentChildren }) {
   const [a, b] = names;
-  const words = { LOWER: `${b} loses less`, HIGHER: `${b} loses more`, CANNOT_BE_TOLD_APART: `${a} and ${b} cannot be told apart`, VERDICT_UNSPECIFIED: 'no figure' };
+  const figure = difference.difference_percent;
   return (
     <p class="muted">
-      {words[difference.verdict ?? 'VERDICT_UNSPECIFIED']} {where}{children}: {difference.difference_percent && <Interval figure={difference.difference_percent} unit={POINTS} />} percentage
-      points with 95&nbsp;%; probability that {b} loses less: <Probability value={difference.lower_probability} />.
+      {verdictWords(difference.verdict, a!, b!)} {where}{children}
+      {figure && <>: {b} less {a} <Num value={figure.value} error={spreadOf(figure)} unit={POINTS} isSigned /> percentage points; <Certainty difference={difference} name={b!} /></>}
     </p>
   );
 }
@@ -270,12 +295,12 @@ function Verdict({ difference, names, where, children }: { difference: ComparedD
 function Unstated({ answer, names }: { answer: ComparePointsResponse; names: string[] }) {
   const lists = (answer.lubricants ?? []).map((each) => each.inputs_without_uncertainty ?? []);
   if (lists.every((each) => each.length === 0)) return null;
-  const isExact = (answer.lubricants ?? []).every((each) => (finite(each.mean_inefficiency_percent?.standard_uncertainty) ?? 0) === 0);
+  const isExact = (answer.lubricants ?? []).every((each) => !each.uncertainty_stated);
   return (
     <Notice kind="caution">
       <details>
         <summary>
-          {isExact ? 'No input of the two has a stated uncertainty: the interval holds the error of the solver alone.'
+          {isExact ? 'No input of the two has a stated uncertainty: there is a difference, but no interval and no probability.'
             : `Some inputs count as exact, because nobody stated their uncertainty: ${lists.map((each, k) => `${each.length} of ${names[k]}`).filter((_, k) => lists[k]!.length > 0).join(', ')}.`}
         </summary>
         <ul>{lists.map((each, k) => each.length > 0 && <li key={k}>{names[k]}: {each.map((field) => inputWords(field)).join('; ')}</li>)}</ul>
@@ -284,14 +309,16 @@ function Unstated({ answer, names }: { answer: ComparePointsResponse; names: str
   );
 }
 
+const endOf = (value: number | undefined, unit: Unit): number | null => { const end = finite(value); return end === null ? null : shown(end, unit); };
+
 const barOf = (key: string, label: string, figure: DrawnFigure, unit: Unit, more?: Partial<Bar>): Bar => {
   const value = shown(finite(figure.value) ?? 0, unit);
-  const hasInterval = (finite(figure.standard_uncertainty) ?? 0) > 0;
+  const hasInterval = isUncertain(figure);
   return {
     key, label, value,
-    low: hasInterval ? finite(figure.interval_minimum) : null,
-    high: hasInterval ? finite(figure.interval_maximum) : null,
-    text: <Num value={figure.value} error={hasInterval ? figure.standard_uncertainty : figure.solver_error} unit={unit} isSigned withError={hasInterval} />,
+    low: hasInterval ? endOf(figure.interval_minimum, unit) : null,
+    high: hasInterval ? endOf(figure.interval_maximum, unit) : null,
+    text: <UncertainNum figure={figure} unit={unit} isSigned />,
     ...more,
   };
 };
@@ -355,9 +382,9 @@ function Reasons({ explanation, names }: { explanation: DifferenceExplanation | 
 }
 
 /** Whose error a share is: that of one of the fluids, or of both. */
-const ownerOf = (share: InputShare, lines: ComparedLubricant[], titles: string[]): string => {
+const ownerOf = (share: InputShare | DecidingInput, lines: ComparedLubricant[], titles: string[]): string => {
   const k = lines.findIndex((each) => each.lubricant_revision === share.lubricant_revision);
-  return share.lubricant_revision === '' || k < 0 ? (share.input!.startsWith('lubricant.') ? 'both fluids' : 'conditions') : titles[k]!;
+  return !share.lubricant_revision || k < 0 ? (share.input!.startsWith('lubricant.') ? 'both fluids' : 'conditions') : titles[k]!;
 };
 
 function MeasureNext({ difference, names, titles }: { difference: ComparedDifference; names: ComparedLubricant[]; titles: string[] }) {
@@ -380,12 +407,11 @@ function MeasureNext({ difference, names, titles }: { difference: ComparedDiffer
 
 function SpeedTable({ lines, names, speeds, pinion }: { lines: ComparedLubricant[]; names: string[]; speeds: number[]; pinion: number[] | undefined }) {
   const [a, b] = lines;
-  const words = { LOWER: `${names[1]} loses less`, HIGHER: `${names[1]} loses more`, CANNOT_BE_TOLD_APART: 'cannot be told apart', VERDICT_UNSPECIFIED: '–' };
+  const solver = lines.flatMap((line) => (line.points ?? []).flatMap((point) => finite(point.inefficiency_energy_mean_percent?.solver_error) ?? []));
   const figure = (line: ComparedLubricant, k: number) => {
     const point = line.points![k]!;
     if (point.refusal_reason) return <span title={point.refusal_message}>refused</span>;
-    const value = point.inefficiency_energy_mean_percent;
-    return <Num value={value?.value} error={(finite(value?.standard_uncertainty) ?? 0) > 0 ? value!.standard_uncertainty : value?.solver_error} unit={plain('%')} withError />;
+    return <UncertainNum figure={point.inefficiency_energy_mean_percent} unit={plain('%')} isStated={line.uncertainty_stated === true} />;
   };
   return (
     <details>
@@ -404,16 +430,17 @@ function SpeedTable({ lines, names, speeds, pinion }: { lines: ComparedLubricant
                   {pinion && <td class="number"><Num value={pinion[k]} unit={RPM} error={1 / RPM.factor} /></td>}
                   <th scope="row" class="number">{speed}</th>
                   <td class="number">{figure(a!, k)}</td><td class="number">{figure(b!, k)}</td>
-                  <td class="number"><Num value={difference?.difference_percent?.value} error={difference?.difference_percent?.standard_uncertainty || difference?.difference_percent?.solver_error} unit={POINTS} isSigned /></td>
-                  <td class="number">{difference?.difference_percent && <Interval figure={difference.difference_percent} unit={POINTS} />}</td>
+                  <td class="number"><Num value={difference?.difference_percent?.value} error={spreadOf(difference?.difference_percent)} unit={POINTS} isSigned /></td>
+                  <td class="number">{difference?.verdict === 'UNCERTAINTY_NOT_STATED' ? 'not stated' : isUncertain(difference?.difference_percent) && <Interval figure={difference!.difference_percent!} unit={POINTS} isSigned />}</td>
                   <td class="number"><Probability value={difference?.lower_probability} /></td>
-                  <td>{words[difference?.verdict ?? 'VERDICT_UNSPECIFIED']}</td>
+                  <td>{difference?.verdict === 'LOWER' || difference?.verdict === 'HIGHER' ? `${names[1]} ` : ''}{VERDICTS[difference?.verdict ?? 'VERDICT_UNSPECIFIED']}</td>
                 </tr>
               );
             })}
           </tbody>
         </table>
       </div>
+      {solver.length > 0 && <p class="small">Error of the solver: at most <Num value={Math.max(...solver)} unit={plain('%')} error={Math.max(...solver)} /> % in an inefficiency. Beneath a value: what its inputs leave, with 95&nbsp;%.</p>}
     </details>
   );
 }
@@ -428,7 +455,8 @@ function Inputs({ a, b, names }: { a: string; b: string; names: string[] }) {
     const origin = (lubricant.provenance ?? []).find((each) => each.field === field.field);
     return (
       <td class="number">
-        <Num value={valueOf(lubricant, field)} error={origin?.standard_uncertainty || undefined} unit={unit} withError />
+        <Num value={valueOf(lubricant, field)} error={origin?.standard_uncertainty || undefined} unit={unit} />
+        {(origin?.standard_uncertainty ?? 0) > 0 && <small>standard uncertainty <Num value={origin!.standard_uncertainty} error={origin!.standard_uncertainty} unit={{ ...unit, offset: 0 }} /></small>}
         <small>{origin ? PROVENANCE[origin.provenance ?? ''] : ''}</small>
       </td>
     );
@@ -455,8 +483,9 @@ function Inputs({ a, b, names }: { a: string; b: string; names: string[] }) {
 
 function footerOf(answer: ComparePointsResponse, request: CompareRequest): string[] {
   return [
-    `Less ${revisionIdOf(answer.lubricants?.[0]?.lubricant_revision)}: ${revisionIdOf(answer.lubricants?.[1]?.lubricant_revision)}. Bands hold 95 % by ${answer.draws} draws of the inputs; hollow: cannot be told apart.`,
-    `Gear set ${revisionIdOf(answer.gear_set_revision)}, surface ${revisionIdOf(answer.surface_revision)}, vehicle ${revisionIdOf(answer.vehicle_revision)}, sump ${sumpText(request.sump)}. Loss of the tooth contact only.`,
+    `Less ${revisionIdOf(answer.lubricants?.[0]?.lubricant_revision)}: ${revisionIdOf(answer.lubricants?.[1]?.lubricant_revision)}. Bands hold 95 % by ${answer.draws} draws of the inputs; hollow: no verdict.`,
+    `Gear set ${revisionIdOf(answer.gear_set_revision)}, surface ${revisionIdOf(answer.surface_revision)}, vehicle ${revisionIdOf(answer.vehicle_revision)}, sump ${sumpText(request.sump)}.`,
+    answer.not_included ?? '',
     `${answer.model_version ?? ''}; correlation of estimates ${request.correlation}, uncertainty of the sump ${request.sumpUncertainty} K`,
   ];
 }
@@ -465,11 +494,12 @@ function tableOf(lines: ComparedLubricant[], speeds: number[]): string {
   const figures = ['value', 'standard_uncertainty', 'interval_minimum', 'interval_maximum', 'solver_error'] as const;
   const header = ['speed_kilometres_per_hour',
     ...lines.flatMap((line) => figures.map((each) => `${revisionIdOf(line.lubricant_revision)}_inefficiency_energy_mean_percent_${each}`)),
-    ...figures.map((each) => `difference_percent_${each}`), 'lower_probability', 'verdict'];
+    ...figures.map((each) => `difference_percent_${each}`), 'lower_probability', 'verdict', ...lines.map((line) => `${revisionIdOf(line.lubricant_revision)}_warnings`)];
   return csvOf(header, speeds.map((speed, k) => {
     const difference = lines[1]!.differences?.[k];
     return [speed,
       ...lines.flatMap((line) => figures.map((each) => finite(line.points?.[k]?.inefficiency_energy_mean_percent?.[each]))),
-      ...figures.map((each) => finite(difference?.difference_percent?.[each])), finite(difference?.lower_probability), difference?.verdict ?? ''];
+      ...figures.map((each) => finite(difference?.difference_percent?.[each])), finite(difference?.lower_probability), difference?.verdict ?? '',
+      ...lines.map((line) => (line.points?.[k]?.warnings ?? []).map((each) => each.code).join(' '))];
   }));
 }

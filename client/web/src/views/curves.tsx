@@ -9,11 +9,11 @@ import { CurveExport } from '../components/curve_export';
 import { Failure, Notice } from '../components/notice';
 import { ReadOut } from '../components/read_out';
 import { Swatch } from '../components/swatch';
-import { Validity } from '../components/validity';
+import { NotIncluded, Validity } from '../components/validity';
 import { axisOf, bandsOf, fluidsOf, optionsOf, readCurve, readSimulation, remarksOf, shortTitle, specOf, speedNear, speedUnitOf, splitSpecOf, variantOf, type Curve } from '../curve';
 import { idOf, revisionIdOf } from '../format';
 import { QUANTITIES, quantityOf } from '../quantities';
-import { warningOf } from '../validity';
+import { levelOf } from '../validity';
 import { bodiesOf, DEFAULTS, inputsOf, queryOf, requestOf, requestOfSimulations, type CurveRequest } from '../request';
 import { studyOf } from '../histories';
 import { titlesOf, useGearSets, useLubricants } from '../resources';
@@ -21,8 +21,8 @@ import { address, go, place, set } from '../router';
 import { Store, useStore } from '../store';
 import { shown, units, watts } from '../units';
 import { differencesOf, needsContactFigures, specWithIntervals, useUncertainty, type ComparedGroup } from '../uncertainty';
-import { POINTS } from '../comparison';
-import { Num } from '../components/num';
+import { POINTS, VERDICTS } from '../comparison';
+import { UncertainNum } from '../components/num';
 import { run } from './home';
 
 const COMPARISONS: [string, string][] = [
@@ -319,7 +319,7 @@ function LossSplit({ curves, titles, xRange, onSpeed, onZoom }: {
       const variant = variantOf(curve.simulation, simulations);
       return splitSpecOf(curve, titleOf(titles, revision) + (variant && `, ${variant}`), fluids.indexOf(revision), greatest,
         bandsOf([curve], (each, row) => each.columns['contact_loss']![row] === 1),
-        bandsOf([curve], (each, row) => each.warnings[row]!.some((warning) => warningOf(warning.code ?? '').level === 'outside')));
+        bandsOf([curve], (each, row) => each.warnings[row]!.some((warning) => levelOf(warning) === 'outside')));
     });
   }, [curves, titles, inUnits]);
   return (
@@ -337,9 +337,7 @@ function LossSplit({ curves, titles, xRange, onSpeed, onZoom }: {
   );
 }
 
-const VERDICTS: Record<string, string> = { LOWER: 'loses less', HIGHER: 'loses more', CANNOT_BE_TOLD_APART: 'cannot be told apart' };
-
-/** Differences from the reference fluid with their intervals; hollow where two cannot be told apart. */
+/** Differences from the reference fluid with their intervals; hollow where there is no verdict. */
 function Differences({ spec, groups, titles, fluids, reference, xRange, onSpeed, onZoom }: {
   spec: Spec; groups: ComparedGroup[]; titles: Map<string, string>; fluids: string[]; reference: string; xRange: [number, number] | undefined;
   onSpeed: (speed: number) => void; onZoom: (range: [number, number] | null) => void;
@@ -369,14 +367,15 @@ function Differences({ spec, groups, titles, fluids, reference, xRange, onSpeed,
               <a href={address('/compare', { a: revisionIdOf(group.answer.lubricants![0]!.lubricant_revision), b: revisionIdOf(each.lubricant_revision), sump: String(group.curves[0]!.simulation.sump_temperature_celsius ?? 40) })}>
                 {titleOf(titles, each.lubricant_revision)} {VERDICTS[difference.verdict]}
               </a>{' '}
-              <Num value={figure.value} error={figure.standard_uncertainty || figure.solver_error} unit={POINTS} isSigned withError />
+              <UncertainNum figure={figure} unit={POINTS} isSigned isStated={difference.verdict !== 'UNCERTAINTY_NOT_STATED'} />
               {variant && ` (${variant})`}
             </li>
           );
         }))}
       </ul>
       <CurveChart spec={spec} height={180} sync="curves" xRange={xRange} onSpeed={onSpeed} onZoom={onZoom} />
-      <p class="small">Means over the speeds; hollow where the two cannot be told apart. Each speed is solved alone here; a curve follows its branch.</p>
+      <NotIncluded text={wide[0]?.answer.not_included} />
+      <p class="small">Means over the speeds with their 95&nbsp;% intervals; hollow where there is no verdict. Each speed is solved alone here; a curve follows its branch.</p>
     </figure>
   );
 }

@@ -4,12 +4,13 @@ import type { CycleLubricant, CyclePart, EvaluateCycleResponse, ListSurfacesResp
 import { CurveChart } from '../charts/curve_chart';
 import { Bars } from '../components/bars';
 import { Entry } from '../components/entry';
+import { ModelChoice } from '../components/model_choice';
 import { Failure, Notice } from '../components/notice';
 import { finite, Num } from '../components/num';
 import { Swatch } from '../components/swatch';
 import { save } from '../charts/svg';
 import { csvOf, TakeAway } from '../components/take_away';
-import { Validity } from '../components/validity';
+import { NotIncluded, Validity } from '../components/validity';
 import { shortTitle } from '../curve';
 import {
   cycleBodyOf, cycleCommandOf, cycleQueryOf, cycleRequestOf, lineProblems, lossSpec, ownCycleOf, partWords, speedSpec, STATES,
@@ -17,12 +18,11 @@ import {
 } from '../cycle';
 import { cycleOf, fragmentOf, tableOfCycle, type CycleFile } from '../cycle_link';
 import { idOf, revisionIdOf, rounded } from '../format';
-import { OPTIONS } from '../request';
 import { titlesOf, useGearSets, useLoaded, useLubricants } from '../resources';
 import { address, go, place, set } from '../router';
 import { useStore } from '../store';
 import { celsius, plain, readNumber, scaled, units, watts, written } from '../units';
-import { remarksOnce } from '../validity';
+import { remarkLines, remarksAt, type Remark } from '../validity';
 
 const MOST_FLUIDS = 8; // of the service
 const KILOJOULES = scaled('kJ', 1e-3);
@@ -104,6 +104,7 @@ export function Cycles() {
   const found = isComplete && answer.error === undefined ? answer.value : null;
   const fluids = found?.lubricants ?? [];
   const names = fluids.map((each) => shortTitle(titles.get(idOf(each.lubricant_revision)) ?? revisionIdOf(each.lubricant_revision)));
+  const remarks = cycleRemarks(fluids, names);
   const cycleName = request.isOwn ? file?.name ?? '' : 'NEDC';
   const inputs = found && { gearSet: revisionIdOf(found.gear_set_revision), surface: revisionIdOf(found.surface_revision), vehicle: revisionIdOf(found.vehicle_revision) };
   const pinned = address('/cycles', { ...cycleQueryOf({ ...request, ...inputs, fluids: fluids.map((each) => revisionIdOf(each.lubricant_revision)) }), t: query.get('t') ?? undefined })
@@ -132,7 +133,7 @@ export function Cycles() {
                   which <Num value={found.standstill_seconds} unit={plain('s')} error={2} /> s at a standstill; {revisionIdOf(found.gear_set_revision)}, {revisionIdOf(found.surface_revision)}, {revisionIdOf(found.vehicle_revision)}
                 </p>
               </div>
-              <TakeAway name="cycle" spec={loss} footer={[`${cycleName}; sump ${written(request.sump, celsius)} ${celsius.symbol}`, found.model_version ?? '']} requests={body}
+              <TakeAway name="cycle" spec={loss} footer={[`${cycleName}; sump ${written(request.sump, celsius)} ${celsius.symbol}`, found.model_version ?? '', found.not_included ?? '', ...remarkLines(remarks)]} requests={body}
                 commands={[cycleCommandOf(request, cycleName, project)]} csv={() => tableOfPieces(found, names)} link={pinned}>
                 {request.isOwn && <button onClick={() => save(fileNameOf(cycleName), new Blob([tableOfCycle(file!.text)], { type: 'text/csv' }))}>The cycle as CSV</button>}
               </TakeAway>
@@ -142,13 +143,13 @@ export function Cycles() {
                 The cycle is too long for a link: send <button class="link" onClick={() => save(fileNameOf(cycleName), new Blob([tableOfCycle(file!.text)], { type: 'text/csv' }))}>its file</button> along, to be dropped on the page that the link opens.
               </Notice>
             )}
+            <NotIncluded text={found.not_included} />
             <Totals fluids={fluids} names={names} reference={names[0]!} />
             <Traces answer={found} names={names} />
             <Origins answer={found} names={names} />
-            <Validity remarks={remarksOnce(fluids.flatMap((each) => [...(each.warnings ?? []), ...(each.input_warnings ?? [])]))} isChecked={false}>
+            <Validity remarks={remarks}>
               <li class="note">The cycle is cut into pieces of at most 1 s, in each of which the axle counts as steady at its mean speed.</li>
               <li class="note">In coast the axle counts as transmitting all of the braking.</li>
-              <li class="note">All losses are mesh losses: bearings, churning and seals are not in them.</li>
             </Validity>
           </>
         )}
@@ -223,16 +224,7 @@ function Form({ request, titles, file, onChange, onTake, violations }: {
         {select('surface', 'Surface', 'run-in', surfaces.value)}
         {select('vehicle', 'Vehicle', 'passenger-car', vehicles.value)}
         <label class="choice"><input type="checkbox" checked={request.isSheared} onChange={() => onChange({ ...request, isSheared: !request.isSheared })} /> <span>Oils after the shear test</span></label>
-        <details open={request.options.length > 0}>
-          <summary>Model options</summary>
-          {OPTIONS.map(([name, words]) => (
-            <label key={name} class="choice">
-              <input type="checkbox" checked={request.options.includes(name)}
-                onChange={() => onChange({ ...request, options: request.options.includes(name) ? request.options.filter((each) => each !== name) : [...request.options, name] })} />
-              <span>{words}</span>
-            </label>
-          ))}
-        </details>
+        <ModelChoice request={request} onChange={onChange} />
       </fieldset>
     </>
   );
@@ -258,6 +250,10 @@ function Lines({ own, problems }: { own: OwnCycle; problems: LineProblem[] }) {
     </section>
   );
 }
+
+/** The warnings of a cycle, each with the fluids that it holds for. */
+const cycleRemarks = (fluids: CycleLubricant[], names: string[]): Remark[] =>
+  remarksAt(fluids.flatMap((each, k) => [...(each.warnings ?? []), ...(each.input_warnings ?? [])].map((warning) => ({ warning, where: names[k]! }))));
 
 /** What each fluid loses over the whole cycle, with both stated errors. */
 function Totals({ fluids, names, reference }: { fluids: CycleLubricant[]; names: string[]; reference: string }) {
@@ -292,7 +288,7 @@ function Totals({ fluids, names, reference }: { fluids: CycleLubricant[]; names:
           </tbody>
         </table>
       </div>
-      <p class="small">Errors: of the energy lost, by the interpolation of the map and by the solver. What the inputs leave open is not in them: <a href={address('/compare', { a: idOf(fluids[0]?.lubricant_revision), b: idOf(fluids.at(-1)?.lubricant_revision) })}>compare the fluids</a>.</p>
+      <p class="small">Errors: of the energy lost, by the interpolation of the map and by the solver. The uncertainty of the inputs is not in them, so that a difference here is no verdict: <a href={address('/compare', { a: idOf(fluids[0]?.lubricant_revision), b: idOf(fluids.at(-1)?.lubricant_revision) })}>compare the fluids</a>.</p>
     </section>
   );
 }

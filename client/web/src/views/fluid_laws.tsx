@@ -6,12 +6,14 @@ import type { Line, Spec } from '../charts/spec';
 import { Failure, Notice } from '../components/notice';
 import { finite, Num } from '../components/num';
 import { TakeAway } from '../components/take_away';
+import { Validity } from '../components/validity';
 import { shortTitle } from '../curve';
 import { idOf, revisionIdOf, rounded } from '../format';
 import { titlesOf, useAnswer, useLubricants } from '../resources';
 import { place, set } from '../router';
 import { useStore } from '../store';
 import { celsius, isDynamic, metres, pascals, plain, scaled, shown, units, written, type Unit } from '../units';
+import { remarkOf, remarksOnce, runsText } from '../validity';
 
 const TEMPERATURES = Array.from({ length: 33 }, (_, k) => -20 + 5 * k); // [C]
 const PRESSURES = Array.from({ length: 25 }, (_, k) => 0.05e9 * k); // [Pa]
@@ -172,6 +174,13 @@ const MAPS: Record<'film' | 'traction', LawMap> = {
   },
 };
 
+/** The lines of a map in which rows of the answer lie. */
+function placesOf(rows: number[], map: LawMap): string {
+  const lines = new Set(rows.map((row) => Math.floor(row / map.x.length)));
+  const text = (value: number) => rounded(shown(value, map.yUnit));
+  return `${runsText(map.y, (_, i) => lines.has(i), text) || 'all values'} of ${map.yLabel()}`;
+}
+
 /** A map of film or traction of a fluid on a rig. */
 export function LawMapView({ id, kind }: { id: string; kind: 'film' | 'traction' }) {
   const inUnits = useStore(units);
@@ -199,6 +208,7 @@ export function LawMapView({ id, kind }: { id: string; kind: 'film' | 'traction'
           words={(row, column) => `${rounded(values[row]![column])} ${unit.symbol} at ${xTexts[column]} ${map.xLabel.split(', ')[1]}, ${yTexts[row]} ${map.yUnit.symbol}`} />
       </figure>
       {(answer.value.refusals ?? []).map((each) => <Notice key={each.message} kind="caution">Gray: {each.message}</Notice>)}
+      <Validity remarks={[...(answer.value.range_warnings ?? []).map((each) => remarkOf(each, placesOf(each.rows ?? [], map))), ...remarksOnce(answer.value.input_warnings ?? [])]} />
       <div class="scroll" tabIndex={0} role="region" aria-label="Numbers of the map">
         <table>
           <thead><tr><th>{map.yLabel()}</th>{map.x.map((_, k) => everyOther(k, map.x.length) && <th key={k} class="number">{xTexts[k]}</th>)}</tr></thead>

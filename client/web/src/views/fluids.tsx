@@ -1,15 +1,15 @@
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { ApiError, atField, change, get, session, url, type Violation } from '../api/client';
-import type { ListLubricantsResponse, Lubricant } from '../api/types';
+import type { BoundaryFrictionAtTemperature, ListLubricantsResponse, Lubricant } from '../api/types';
 import { Entry } from '../components/entry';
 import { Missing } from '../components/missing';
 import { Failure } from '../components/notice';
 import { Validity } from '../components/validity';
 import { remarkOf } from '../validity';
 import { ago, idOf, rounded } from '../format';
-import { readNumber, shown, written } from '../units';
+import { celsius, readNumber, shown, units, written } from '../units';
 import { LawMapView, Viscosity } from './fluid_laws';
-import { ALL_FIELDS, BASE_OILS, constraintOf, DATA_SHEET, DOCUMENTED, PARAMETERS, PRESSURE_LAW, rangeText, unitOf, valueOf, type Field } from '../lubricant_fields';
+import { ALL_FIELDS, BASE_OILS, BOUNDARY, constraintOf, DATA_SHEET, DOCUMENTED, PARAMETERS, PRESSURE_LAW, rangeText, unitOf, valueOf, type Field } from '../lubricant_fields';
 import { PROVENANCE } from '../provenance';
 import { useLoaded, useSchema } from '../resources';
 import { address, go, place, set } from '../router';
@@ -136,7 +136,8 @@ function FluidPage({ id }: { id: string }) {
     return (
       <tr key={field.path}>
         <th scope="row">{field.label}</th>
-        <td class="number" data-exact={value}>{written(value, unit).length > 8 ? rounded(shown(value, unit), spread) : written(value, unit)}{spread !== undefined && ` ± ${rounded(spread, spread)}`}</td>
+        <td class="number" data-exact={value}>{written(value, unit).length > 8 ? rounded(shown(value, unit), spread) : written(value, unit)}</td>
+        <td class="number">{spread === undefined ? '' : rounded(spread, spread)}</td>
         <td>{unit.symbol}</td>
         <td>{source ? PROVENANCE[source.provenance ?? ''] ?? '' : ''}</td>
         <td class="muted">{source?.source}</td>
@@ -172,11 +173,28 @@ function FluidPage({ id }: { id: string }) {
       {(tab === 'film' || tab === 'traction') && <LawMapView key={tab} id={id} kind={tab} />}
       {tab === '' && <div class="scroll" tabIndex={0} role="region" aria-label="Parameters">
         <table class="parameters">
-          <thead><tr><th>Quantity</th><th class="number">Value</th><th>Unit</th><th>Origin</th><th>Source</th></tr></thead>
+          <thead><tr><th>Quantity</th><th class="number">Value</th><th class="number">Standard uncertainty</th><th>Unit</th><th>Origin</th><th>Source</th></tr></thead>
           <tbody>{ALL_FIELDS.map(row)}</tbody>
         </table>
+        <BoundaryFriction rows={lubricant.asperity_friction_by_temperature ?? []} />
       </div>}
     </>
+  );
+}
+
+/** The boundary friction by temperature at the contact inlet, which takes the place of the coefficient. */
+function BoundaryFriction({ rows }: { rows: BoundaryFrictionAtTemperature[] }) {
+  useStore(units);
+  if (rows.length === 0) return null;
+  return (
+    <table>
+      <thead><tr><th class="number">Inlet<small>{celsius.symbol}</small></th><th class="number">Boundary friction coefficient ζ</th></tr></thead>
+      <tbody>
+        {rows.map((each) => (
+          <tr key={each.temperature_celsius}><th scope="row" class="number">{written(each.temperature_celsius ?? 0, celsius)}</th><td class="number">{rounded(each.asperity_friction_coefficient ?? 0)}</td></tr>
+        ))}
+      </tbody>
+    </table>
   );
 }
 
@@ -299,6 +317,10 @@ function FluidForm({ lubricant }: { lubricant?: Lubricant }) {
       <fieldset class="grid">
         <legend>Data sheet</legend>
         {[...DATA_SHEET, ...DOCUMENTED].map(input)}
+      </fieldset>
+      <fieldset class="grid">
+        <legend>Boundary friction of the additives; empty: that of the surface</legend>
+        {BOUNDARY.map(input)}
       </fieldset>
       {!lubricant && (
         <fieldset>

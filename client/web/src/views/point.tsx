@@ -12,7 +12,7 @@ import { Missing } from '../components/missing';
 import { finite, Num } from '../components/num';
 import { Failure, Notice } from '../components/notice';
 import { figureWords } from '../figures';
-import { inputWords } from '../comparison';
+import { inputWords } from '../inputs';
 import { Swatch } from '../components/swatch';
 import { Validity } from '../components/validity';
 import { remarksOnce } from '../validity';

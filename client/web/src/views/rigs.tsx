@@ -3,23 +3,23 @@ import { ApiError, change, get, url } from '../api/client';
 import type { EvaluateRigResponse, ListSurfacesResponse } from '../api/types';
 import { CurveChart } from '../charts/curve_chart';
 import { Entry } from '../components/entry';
-import { Num } from '../components/num';
+import { OptionChoice, PresetChoice } from '../components/model_choice';
+import { finite, UncertainNum } from '../components/num';
 import { Failure, Notice } from '../components/notice';
 import { Swatch } from '../components/swatch';
 import { csvOf, TakeAway } from '../components/take_away';
 import { Validity } from '../components/validity';
 import { shortTitle } from '../curve';
 import { idOf, revisionIdOf, rounded } from '../format';
-import { OPTIONS } from '../request';
 import { titlesOf, useLoaded, useLubricants } from '../resources';
 import {
-  callsOf, LISTS, rigBand, rigCommandsOf, rigCurvesOf, rigQueryOf, RIG_QUANTITIES, rigRequestOf, RIGS, rigSpec, rigValue,
+  callsOf, codesAt, LISTS, rigBand, rigRemarks, rigCommandsOf, rigCurvesOf, rigQueryOf, RIG_QUANTITIES, rigRequestOf, RIGS, rigSpec, rigValue,
   type RigCurve, type RigKind, type RigRequest,
 } from '../rig';
 import { address, go, place, set } from '../router';
 import { useStore } from '../store';
 import { celsius, plain, readNumber, units, written, type Unit } from '../units';
-import { remarksOnce } from '../validity';
+import { remarkLines, remarksOnce } from '../validity';
 
 /** A ball on a disc by the contact of the axle: traction, film and Stribeck curves. */
 export function Rigs() {
@@ -41,6 +41,7 @@ export function Rigs() {
   const [at, setAt] = useState<number | null>(null);
   const update = (next: RigRequest) => go(address('/rigs', { ...rigQueryOf(next), y: next.kind === request.kind ? query.get('y') ?? undefined : undefined }), 'replace');
   const given = answers.value ?? [];
+  const remarks = [...rigRemarks(request, curves, titleOf), ...remarksOnce(given.flatMap((each) => each.answer.input_warnings ?? []))];
   // The revisions that were evaluated: a link with them shows the same tomorrow.
   const pinned = [...new Set(given.map((each) => revisionIdOf(each.answer.lubricant_revision)))];
   const refusals = new Map(given.flatMap((each) => each.answer.refusals ?? []).map((each) => [each.message, each]));
@@ -57,7 +58,7 @@ export function Rigs() {
             <div class="heading">
               <div><h1>{rig.about}</h1><p class="muted">{machineText(request)}</p></div>
               <TakeAway name={request.kind} spec={{ ...spec, title: `${rig.label}: ${spec.title}` }} requests={calls.map((each) => each.body)} commands={rigCommandsOf(request, project)} link={address('/rigs', { ...rigQueryOf({ ...request, fluids: pinned }), y: query.get('y') ?? undefined })}
-                footer={[machineText(request), given[0]?.answer.model_version ?? '']} csv={() => tableOf(curves, titleOf)} />
+                footer={[machineText(request), given[0]?.answer.model_version ?? '', ...remarkLines(remarks)]} csv={() => tableOf(curves, titleOf)} />
             </div>
             <figure class="figure" aria-label={quantity.label}>
               <div class="tabs" role="group" aria-label="Quantity">
@@ -71,6 +72,7 @@ export function Rigs() {
                 : <CurveChart spec={spec} height={matchMedia('(max-width: 640px)').matches ? 260 : 380} sync="rigs" onSpeed={setAt} />}
               <p class="axis-title">{spec.xLabel}</p>
               <div class="under-chart">
+                {spec.lines.some((line) => line.hollow.includes(true)) && <ul class="key"><li>hollow: do not rank fluids here</li></ul>}
                 {spec.lines.some((line) => line.low) && <ul class="key"><li><i class="swatch band" /> holds the curve with 95&nbsp;%, as far as the inputs decide</li></ul>}
                 <div class="switches">
                   <label class="choice"><input type="checkbox" checked={request.hasBands} onChange={() => update({ ...request, hasBands: !request.hasBands })} /> Uncertainty of the inputs</label>
@@ -78,7 +80,7 @@ export function Rigs() {
               </div>
             </figure>
             <ReadOut request={request} curves={curves} titleOf={titleOf} at={at} onAt={setAt} />
-            <Validity remarks={remarksOnce(given.flatMap((each) => each.answer.input_warnings ?? []))} isOpen={refusals.size > 0} isChecked={false}>
+            <Validity remarks={remarks} isOpen={refusals.size > 0}>
               {[...refusals.values()].map((each) => <li key={each.message} class="outside">No figures: {each.message}</li>)}
               <li class="note">The contact is the one of the axle: film by eq 12, with the friction, heat and asperities of the flanks.</li>
             </Validity>
@@ -96,7 +98,7 @@ function machineText(request: RigRequest): string {
     `oil at ${request.temperatures.map((each) => written(each, celsius)).join(', ')} ${celsius.symbol}`,
   ];
   const surface = request.surface ? `${request.surface}${request.roughness > 0 ? ` of ${request.roughness} nm` : ''}` : 'smooth';
-  return `A ball of ${rounded(2 * request.radius)} mm on ${request.disc}, ${surface}; ${lists.join('; ')}`;
+  return `A ball of ${rounded(2 * request.radius)} mm on ${request.disc}, ${surface}; ${lists.join('; ')}${request.preset === 'PAPER' ? '; model of the paper' : ''}`;
 }
 
 const FIELDS: Record<(typeof LISTS)[number], { label: string; field: string; unit: Unit }> = {
@@ -147,7 +149,7 @@ function Form({ request, onChange, titles, error }: { request: RigRequest; onCha
         <legend>Rig</legend>
         <div class="tabs" role="group" aria-label="Rig">
           {(Object.keys(RIGS) as RigKind[]).map((kind) => (
-            <button key={kind} aria-pressed={kind === request.kind} onClick={() => onChange({ ...RIGS[kind].usual, kind, fluids: request.fluids, hasBands: request.hasBands })}>{RIGS[kind].label}</button>
+            <button key={kind} aria-pressed={kind === request.kind} onClick={() => onChange({ ...RIGS[kind].usual, kind, fluids: request.fluids, preset: request.preset, hasBands: request.hasBands })}>{RIGS[kind].label}</button>
           ))}
         </div>
       </fieldset>
@@ -179,17 +181,12 @@ function Form({ request, onChange, titles, error }: { request: RigRequest; onCha
             {(surfaces.value ?? []).map((each) => <option key={each.name} value={idOf(each.name)}>{each.display_name || idOf(each.name)}</option>)}
           </select>
         </label>
+        <PresetChoice preset={request.preset} onChange={(preset) => onChange({ ...request, preset })} />
         {request.surface !== '' && number('roughness', 'Roughness σ, nm; 0: of the surface', 'composite_rms')}
       </fieldset>
       <fieldset>
         <legend>Beside the full model</legend>
-        {[...OPTIONS, ['inlet_shear_heating', 'Shear heating of the inlet'] as [string, string]].map(([name, words]) => (
-          <label key={name} class="choice">
-            <input type="checkbox" checked={request.options.includes(name)}
-              onChange={() => onChange({ ...request, options: request.options.includes(name) ? request.options.filter((each) => each !== name) : [...request.options, name] })} />
-            <span>{words}</span>
-          </label>
-        ))}
+        <OptionChoice options={request.options} onChange={(options) => onChange({ ...request, options })} />
       </fieldset>
     </>
   );
@@ -217,7 +214,7 @@ function ReadOut({ request, curves, titleOf, at, onAt }: {
             {curves.map((curve, k) => (
               <tr key={k}>
                 <th scope="row"><Swatch series={request.fluids.indexOf(curve.fluid)} />{[titleOf(curve.fluid), curve.label].filter((each) => each !== '').join(', ')}</th>
-                {has.map((each) => <td key={each.id} class="number"><Num value={rigValue(curve, each, row)} error={rigBand(curve, each, row)?.error} unit={each.unit} withError /></td>)}
+                {has.map((each) => <td key={each.id} class="number"><UncertainNum figure={rigBand(curve, each, row) ?? { value: rigValue(curve, each, row) }} unit={each.unit} /></td>)}
               </tr>
             ))}
           </tbody>
@@ -230,10 +227,10 @@ function ReadOut({ request, curves, titleOf, at, onAt }: {
 function tableOf(curves: RigCurve[], titleOf: (fluid: string) => string): string {
   const uncertain = RIG_QUANTITIES.filter((quantity) => curves.some((curve) => curve.x.some((_, row) => rigBand(curve, quantity, row) !== null)));
   return csvOf(['fluid', 'variant', 'x', ...RIG_QUANTITIES.map((each) => each.column as string),
-    ...uncertain.flatMap((each) => ['standard_uncertainty', 'interval_minimum', 'interval_maximum'].map((end) => `${each.column}_${end}`))],
+    ...uncertain.flatMap((each) => ['standard_uncertainty', 'interval_minimum', 'interval_maximum'].map((end) => `${each.column}_${end}`)), 'warnings'],
   curves.flatMap((curve) => curve.x.map((x, row) => [titleOf(curve.fluid), `"${curve.label}"`, x, ...RIG_QUANTITIES.map((each) => rigValue(curve, each, row)),
     ...uncertain.flatMap((each) => {
       const band = rigBand(curve, each, row);
-      return [band?.error ?? null, band?.low ?? null, band?.high ?? null];
-    })])));
+      return [finite(band?.standard_uncertainty), finite(band?.interval_minimum), finite(band?.interval_maximum)];
+    }), codesAt(curve, row)])));
 }
