@@ -139,7 +139,7 @@ Outcome<v1::EstimateCandidateEffectsResponse> estimate_candidate_effects(
       effect.add_collinear_columns(factors.columns[other]);
     }
   }
-  add_warnings(table.warning_bits(), candidates, *out.mutable_warnings());
+  table.add_warnings(candidates, *out.mutable_warnings());
   for (const auto& [factor, reason] : found->left_out) {
     v1::ColumnWithoutEffect& column = *out.add_left_out();
     column.set_column(factors.columns[factor]);

@@ -117,7 +117,7 @@ Outcome<v1::RankCandidatesResponse> rank_candidates(Application& application,
     out.set_withheld(withheld_count);
     out.set_draws(comparisons.drawn.draws);
     if (!table.is_of_rig()) out.set_not_included(kToothContactOnly);
-    add_warnings(warning_bits, best, *out.mutable_warnings());
+    table.add_warnings(best, *out.mutable_warnings());
     for (v1::RefusedCandidate& each : table.refused_candidates(kMostRefused)) {
       *out.add_refused_candidates() = std::move(each);
     }

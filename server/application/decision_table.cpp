@@ -13,6 +13,7 @@
 #include "server/contract/resource_names.h"
 #include "server/mapping/from_core.h"
 #include "server/simulation/campaign_columns.h"
+#include "server/support/value_of.h"
 
 namespace tribodyn::server {
 namespace {
@@ -48,6 +49,39 @@ void visit_blocks(const StoredCampaign& stored, const Visit& visit) {
   for (std::int64_t first = 0; first < stored.candidates; first += most) {
     visit(first, std::min<std::int64_t>(most, stored.candidates - first));
   }
+}
+
+/// Returns e.g. "at 20 to 60 km/h, sump -20 C": the range of the conditions with bit `n`, in what
+/// differs between conditions. Empty if all have it.
+std::string text_of_conditions(const std::vector<TableColumn>& columns,
+                               const std::vector<std::uint32_t>& bits, std::size_t n) {
+  static constexpr std::pair<std::string_view, std::string_view> kForms[] = {
+      {"speed_kilometres_per_hour", "{} km/h"},
+      {"ascent_angle_degrees", "slope {} degrees"},
+      {"sump_temperature_celsius", "sump {} C"},
+      {"inlet_temperature_rise_kelvin", "inlet rise {} K"},
+      {"load_newtons", "{} N"},
+      {"entrainment_speed_metres_per_second", "{} m/s"},
+      {"slide_roll_ratio_percent", "slide-roll ratio {} %"},
+      {"supply_temperature_celsius", "supply {} C"}};
+  if (std::all_of(bits.begin(), bits.end(), [n](auto each) { return (each >> n & 1) != 0; })) {
+    return {};
+  }
+  std::vector<std::string> parts;
+  for (const TableColumn& column : columns) {
+    const auto [least, most] = std::minmax_element(column.values.begin(), column.values.end());
+    if (*least == *most) continue;
+    double low = *most, high = *least;
+    for (std::size_t k = 0; k < bits.size(); ++k) {
+      if ((bits[k] >> n & 1) == 0) continue;
+      low = std::min(low, column.values[k]);
+      high = std::max(high, column.values[k]);
+    }
+    const std::string range = number_text(low) + (low == high ? "" : " to " + number_text(high));
+    parts.push_back(
+        fmt::format(fmt::runtime(value_of(kForms, std::string_view(column.name), "{}")), range));
+  }
+  return fmt::format("at {}", fmt::join(parts, ", "));
 }
 
 }  // namespace
@@ -105,19 +139,25 @@ CandidateSelection DecisionTable::read_all(
   return select_candidates(missing, figures_, constraints);
 }
 
-std::vector<std::uint32_t> DecisionTable::warning_bits() {
+template <class Visit>
+void DecisionTable::visit_warnings(const Visit& visit) {
   const int column = own_.columns.find(std::string(kWarningBits))->number;
   const StoredCampaign& stored = own_.stored;
-  std::vector<std::uint32_t> out;
+  const auto conditions = static_cast<std::size_t>(stored.conditions);
   visit_blocks(stored, [&](std::int64_t first, std::int64_t count) {
     const std::vector<double> bits = rows(stored, column, first, count);
-    for (auto at = bits.begin(); at != bits.end(); at += stored.conditions) {
-      std::uint32_t all = 0;
-      for (auto row = at; row != at + stored.conditions; ++row) {
-        if (std::isfinite(*row)) all |= static_cast<std::uint32_t>(*row);
-      }
-      out.push_back(all);
+    for (std::size_t row = 0; row < bits.size(); ++row) {
+      if (!std::isfinite(bits[row])) continue;
+      visit(static_cast<std::size_t>(first) + row / conditions, row % conditions,
+            static_cast<std::uint32_t>(bits[row]));
     }
+  });
+}
+
+std::vector<std::uint32_t> DecisionTable::warning_bits() {
+  std::vector<std::uint32_t> out(static_cast<std::size_t>(own_.stored.candidates));
+  visit_warnings([&out](std::size_t candidate, std::size_t /*condition*/, std::uint32_t bits) {
+    out[candidate] |= bits;
   });
   return out;
 }
@@ -153,20 +193,30 @@ std::vector<v1::RefusedCandidate> DecisionTable::refused_candidates(int most) {
   return out;
 }
 
-void add_warnings(const std::vector<std::uint32_t>& bits,
-                  const std::vector<std::size_t>& candidates,
-                  google::protobuf::RepeatedPtrField<v1::CandidateWarning>& out) {
+void DecisionTable::add_warnings(const std::vector<std::size_t>& candidates,
+                                 google::protobuf::RepeatedPtrField<v1::CandidateWarning>& out) {
   constexpr int kMostNamed = 1000;
+  const StoredCampaign& stored = own_.stored;
+  std::vector<bool> is_chosen(static_cast<std::size_t>(stored.candidates));
+  for (const std::size_t each : candidates) is_chosen[each] = true;
+  std::vector<std::uint32_t> of_candidates(is_chosen.size());
+  std::vector<std::uint32_t> of_conditions(static_cast<std::size_t>(stored.conditions));
+  visit_warnings([&](std::size_t candidate, std::size_t condition, std::uint32_t bits) {
+    if (!is_chosen[candidate]) return;
+    of_candidates[candidate] |= bits;
+    of_conditions[condition] |= bits;
+  });
   for (std::size_t n = 0; n < warning_kinds().size() && n < 32; ++n) {
     v1::CandidateWarning warning;
     for (const std::size_t each : candidates) {
-      if ((bits[each] >> n & 1) != 0 && warning.candidates_size() < kMostNamed) {
+      if ((of_candidates[each] >> n & 1) != 0 && warning.candidates_size() < kMostNamed) {
         warning.add_candidates(static_cast<int>(each));
       }
     }
     if (warning.candidates().empty()) continue;
     warning.set_code(std::string(warning_kinds()[n].code));
     set_kind(warning);
+    warning.set_where(text_of_conditions(own_.columns.conditions(), of_conditions, n));
     *out.Add() = std::move(warning);
   }
 }

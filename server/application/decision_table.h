@@ -68,6 +68,9 @@ class DecisionTable {
 
   /// Returns the warnings of each candidate: bits of the column kWarningBits, of all of its rows.
   std::vector<std::uint32_t> warning_bits();
+  /// Adds the warnings of candidates, one for each code.
+  void add_warnings(const std::vector<std::size_t>& candidates,
+                    google::protobuf::RepeatedPtrField<v1::CandidateWarning>& out);
   /// Returns which candidates have a row whose verdict a warning withholds.
   static bool is_withheld(std::uint32_t warning_bits);
   /// Returns candidates that have a refused row, with the reason of the first, at most `most`.
@@ -80,6 +83,9 @@ class DecisionTable {
  private:
   FigureSource* find_source(const std::string& name, const std::string& path,
                             Violations& violations);
+  /// Calls visit(candidate, condition, bits) for each row of the campaign that has bits.
+  template <class Visit>
+  void visit_warnings(const Visit& visit);
   std::vector<double> rows(const StoredCampaign& stored, int column, std::int64_t candidate,
                            std::int64_t count);
   void add_missing(const StoredCampaign& stored, std::vector<bool>& missing);
@@ -99,11 +105,6 @@ class DecisionTable {
 /// Returns candidates by a figure, the best first, equal ones in their order.
 std::vector<std::size_t> ordered(std::vector<std::size_t> candidates,
                                  const std::vector<double>& values, bool wants_most);
-
-/// Adds the warnings of candidates, one for each code. `bits`: as DecisionTable::warning_bits().
-void add_warnings(const std::vector<std::uint32_t>& bits,
-                  const std::vector<std::size_t>& candidates,
-                  google::protobuf::RepeatedPtrField<v1::CandidateWarning>& out);
 
 /// Sets how many candidates a decision does not take.
 template <class Response>

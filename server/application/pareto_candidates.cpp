@@ -58,7 +58,7 @@ Outcome<v1::FindParetoCandidatesResponse> find_pareto_candidates(
       set_candidate(candidate, *out.add_candidates());
     }
   }
-  add_warnings(table.warning_bits(), {members.begin(), members.end()}, *out.mutable_warnings());
+  table.add_warnings({members.begin(), members.end()}, *out.mutable_warnings());
   if (request.beaten_count() == 0) return out;
   for (const std::size_t candidate :
        ordered(selection.candidates, first, request.first().wants_most())) {

@@ -30,15 +30,22 @@ std::vector<TableColumn> rig_condition_columns(const v1::Campaign& request) {
   return {std::move(load), std::move(speed), std::move(slide), std::move(supply)};
 }
 
-/// Returns a column of each field of the conditions, defaults written out.
-std::vector<TableColumn> condition_columns(const v1::Campaign& request) {
+}  // namespace
+
+TableColumns::TableColumns(Application& application, const StoredCampaign& stored,
+                           const CallContext& call)
+    : application_(application), stored_(stored), call_(call) {
+  request_.ParseFromString(stored.request);
+}
+
+std::vector<TableColumn> TableColumns::conditions() const {
   using enum TableColumn::Kind;
-  if (request.has_rig()) return rig_condition_columns(request);
+  if (request_.has_rig()) return rig_condition_columns(request_);
   TableColumn speed{"speed_kilometres_per_hour", kPerCondition},
       ascent{"ascent_angle_degrees", kPerCondition},
       sump{"sump_temperature_celsius", kPerCondition},
       rise{"inlet_temperature_rise_kelvin", kPerCondition};
-  for (const v1::PointCondition& each : request.conditions()) {
+  for (const v1::PointCondition& each : request_.conditions()) {
     speed.values.push_back(each.speed_kilometres_per_hour());
     ascent.values.push_back(each.ascent_angle_degrees());
     sump.values.push_back(each.has_sump_temperature_celsius() ? each.sump_temperature_celsius()
@@ -48,14 +55,6 @@ std::vector<TableColumn> condition_columns(const v1::Campaign& request) {
                               : kDefaultInletTemperatureRiseKelvin);
   }
   return {std::move(speed), std::move(ascent), std::move(sump), std::move(rise)};
-}
-
-}  // namespace
-
-TableColumns::TableColumns(Application& application, const StoredCampaign& stored,
-                           const CallContext& call)
-    : application_(application), stored_(stored), call_(call) {
-  request_.ParseFromString(stored.request);
 }
 
 std::vector<TableColumn> TableColumns::figures() const {
@@ -72,7 +71,7 @@ std::optional<TableColumn> TableColumns::find(const std::string& name) {
   simple.push_back({"candidate", TableColumn::Kind::kCandidate});
   simple.push_back({"condition", TableColumn::Kind::kCondition});
   simple.push_back({"row", TableColumn::Kind::kRow});
-  for (TableColumn& each : condition_columns(request_)) simple.push_back(std::move(each));
+  for (TableColumn& each : conditions()) simple.push_back(std::move(each));
   for (TableColumn& each : simple) {
     if (each.name == name) return std::move(each);
   }
@@ -90,7 +89,7 @@ std::optional<TableColumn> TableColumns::find(const std::string& name) {
 std::vector<std::string> TableColumns::names() {
   std::vector<std::string> out = campaign_columns(request_);
   out.insert(out.end(), {"candidate", "condition", "row"});
-  for (const TableColumn& each : condition_columns(request_)) out.push_back(each.name);
+  for (const TableColumn& each : conditions()) out.push_back(each.name);
   for (const v1::CandidateColumn& each : table().candidate_columns()) out.push_back(each.path());
   for (const v1::CandidateAttribute& each : table().candidate_attributes()) {
     if (!each.values().empty()) out.push_back(each.name());

@@ -37,6 +37,8 @@ class TableColumns {
 
   /// Returns the columns that the store keeps.
   std::vector<TableColumn> figures() const;
+  /// Returns a column of each field of the conditions, defaults written out.
+  std::vector<TableColumn> conditions() const;
   std::optional<TableColumn> find(const std::string& name);
   std::vector<std::string> names();
 

@@ -214,6 +214,27 @@ TEST_F(Verdicts, AreWithheldInTheColdByEveryMethodWithoutInletHeating) {
   EXPECT_THAT(codes, Contains("INLET_HEATING_LEFT_OUT"));
 }
 
+TEST_F(Verdicts, OfACampaignNameTheConditionsThatAWarningConcerns) {
+  v1::Campaign campaign;
+  campaign.add_candidate_lubricants(add(kOils[0]));
+  set_condition(30, 90, *campaign.add_conditions());
+  set_condition(60, -20, *campaign.add_conditions());
+  set_condition(120, -20, *campaign.add_conditions());
+  *campaign.mutable_model_options() = paper();
+  v1::RankCandidatesRequest request;
+  request.set_name(create(campaign));
+  ASSERT_TRUE(reaches(request.name(), v1::Campaign::SUCCEEDED));
+  Application application = bench_.application();
+  const auto ranking = rank_candidates(application, request);
+  ASSERT_TRUE(ranking.ok());
+  std::string where;
+  for (const auto& each : ranking.message().warnings()) {
+    if (each.code() == "INLET_HEATING_LEFT_OUT") where = each.where();
+  }
+  EXPECT_THAT(where, testing::AllOf(testing::HasSubstr("60 to 120 km/h"),
+                                    testing::HasSubstr("sump -20 C")));
+}
+
 TEST_F(Verdicts, OfAThinPaoOverAThickMineralOilHoldOnTheMotorwayInTheCold) {
   // 75W-90 PAO against an 85W-140 at a sump of 10 C and 120 km/h.
   const std::string thin =

@@ -214,7 +214,8 @@ std::vector<ShownWarning> ranking_warnings(const v1::RankCandidatesResponse& ans
       concerned.push_back(known == names.end() ? std::to_string(candidate) : known->second);
     }
     out.push_back(shown_warning(each));
-    out.back().where = names_text(concerned, answer.candidates_size());
+    out.back().where = names_text(concerned, answer.candidates_size()) +
+                       (each.where().empty() ? "" : " " + each.where());
   }
   std::stable_sort(out.begin(), out.end(),
                    [](const auto& a, const auto& b) { return a.level > b.level; });

@@ -56,10 +56,10 @@ class Decisions(StoredCampaign):
         ``attrs["compared"]`` candidates, where no uncertainty is stated, and where a warning withholds
         the verdict: these candidates stand last.
 
-        ``attrs["warnings"]`` holds, by code, level, summary and the numbers of the candidates
-        concerned; ``attrs["refused_candidates"]`` is a table of those without a figure, with the
-        reason; ``attrs["not_included"]`` says what the figures leave out. ``attrs`` counts the others
-        as "excluded", "refused" and "missing" (not computed yet), and those "withheld".
+        ``attrs["warnings"]`` holds, by code, level, summary, the numbers of the candidates concerned
+        and "where", the range of conditions; ``attrs["refused_candidates"]`` is a table of those
+        without a figure, with the reason; ``attrs["not_included"]`` says what the figures leave out.
+        ``attrs`` counts the others as "excluded", "refused" and "missing" (not computed yet), and those "withheld".
         """
         arguments = Arguments()
         by = by or self._usual_figure()
@@ -103,6 +103,7 @@ class Decisions(StoredCampaign):
                     "level": level_word(each.level),
                     "summary": each.summary,
                     "candidates": list(each.candidates),
+                    "where": each.where,
                 }
                 for each in answer.warnings
             },

@@ -113,7 +113,8 @@ export function rankingRemarks(answer: RankCandidatesResponse | null | undefined
   return (answer?.warnings ?? []).map((warning) => {
     const all = warning.candidates ?? [];
     const isOfAll = all.length >= labels.size;
-    return remarkOf(warning, isOfAll ? '' : `${all.slice(0, MOST_LABELS).map((each) => labels.get(each) ?? each).join(', ')}${all.length > MOST_LABELS ? ` and ${all.length - MOST_LABELS} more` : ''}`);
+    const candidates = isOfAll ? '' : `${all.slice(0, MOST_LABELS).map((each) => labels.get(each) ?? each).join(', ')}${all.length > MOST_LABELS ? ` and ${all.length - MOST_LABELS} more` : ''}`;
+    return remarkOf(warning, [candidates, warning.where].filter(Boolean).join(' '));
   });
 }
 
