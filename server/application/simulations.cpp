@@ -242,7 +242,7 @@ Outcome<v1::Simulation> create_simulation(Application& application,
   application.jobs.metrics().observe(Phase::kValidation, watch.seconds());
   if (inputs) {
     check_pour_point(*inputs->lubricant, inputs->effective.sump_temperature_celsius(),
-                     "simulation.lubricant", violations);
+                     "simulation.lubricant", violations, inputs->effective.lubricant_revision());
   }
   if (!violations.empty()) {
     application.jobs.metrics().count(Submission::kInvalid);

@@ -119,12 +119,12 @@ void check_fluid_at_inlet(const v1::Lubricant& lubricant, double sump_temperatur
 }
 
 void check_pour_point(const v1::Lubricant& lubricant, double sump_temperature_celsius,
-                      const std::string& path, Violations& violations) {
+                      const std::string& path, Violations& violations, std::string_view name) {
   if (!lubricant.has_pour_point_celsius() ||
       sump_temperature_celsius >= lubricant.pour_point_celsius()) {
     return;
   }
-  violations.add(path, "the oil is at {} C; allowed: at least the pour point, {} C",
+  violations.add(path, "{} is at {} C; allowed: at least the pour point, {} C", name,
                  sump_temperature_celsius, lubricant.pour_point_celsius());
 }
 

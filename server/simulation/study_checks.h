@@ -1,6 +1,8 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "server/contract/violations.h"
@@ -13,19 +15,23 @@ namespace tribodyn::server {
 // These functions check rules between fields and limits on work, which the table of constraints
 // cannot express. Each adds all violations that it finds.
 
+/// Adds a violation if the sump is below the pour point that the lubricant states. `name` is that of
+/// the oil in the message.
+void check_pour_point(const v1::Lubricant& lubricant, double sump_temperature_celsius,
+                      const std::string& path, Violations& violations,
+                      std::string_view name = "the oil");
+
 /// Checks that the lubricant's laws are valid at the inlet: T_0,ref below T_in (eq 34), positive
 /// density (eq 26), alpha* measured above T_0,ref (eq 33).
-/// Adds a violation if the sump is below the pour point that the lubricant states.
-void check_pour_point(const v1::Lubricant& lubricant, double sump_temperature_celsius,
-                      const std::string& path, Violations& violations);
+void check_fluid_at_inlet(const v1::Lubricant& lubricant, double sump_temperature_celsius,
+                          double inlet_temperature_rise_kelvin, const std::string& path,
+                          Violations& violations);
+
 /// Returns why points have no figures at a temperature of the sump, UPPER_SNAKE_CASE and one
 /// sentence; empty texts if they may have.
 std::pair<std::string, std::string> refusal_at_inlet(const v1::Lubricant& lubricant,
                                                      double sump_temperature_celsius,
                                                      double inlet_temperature_rise_kelvin);
-void check_fluid_at_inlet(const v1::Lubricant& lubricant, double sump_temperature_celsius,
-                          double inlet_temperature_rise_kelvin, const std::string& path,
-                          Violations& violations);
 
 /// Checks that the condition is set, that history columns exist and differ, and that rows times
 /// columns are within the limit.

@@ -212,7 +212,7 @@ expect 1 paper 9 --output "$folder/no/such"
 
 echo "--- point"
 expect 0 point --lubricant 75W-90 --speed 72.5 --condition sheared --solver-details --assumptions --progress lines
-out_has ' %, (\+/- [0-9.]+|[0-9.]+ to [0-9.]+); solver error 0\.[0-9]+ %' ' [0-9.]+ W' '[0-9a-f]{64}' ' 0\.940' 'asperity_radius_metres'
+out_has ' %, (\+/- [0-9.]+|[0-9.]+ to [0-9.]+)$' ' solver error 0\.[0-9]+; ' ' [0-9.]+ W' '[0-9a-f]{64}' ' 0\.940' 'asperity_radius_metres'
 err_has '^lubricants/75W-90: '
 expect 0 point --lubricant paper-fluid-1 --speed 50 --model quasi-static --isothermal --output csv
 out_lines 2

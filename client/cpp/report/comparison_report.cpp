@@ -680,8 +680,10 @@ std::string uncertainty_report(const v1::ComparePointsResponse& response) {
   if (!point.refusal_reason().empty()) return "";
   Sheet sheet;
   sheet.heading("Uncertainty");
-  const auto line = [&sheet](const char* label, const v1::UncertainFigure& figure,
-                             const char* unit) {
+  const auto line = [&](const char* label, v1::UncertainFigure figure, const char* unit) {
+    // The figures of the point state their own: this is another, sharper solution.
+    figure.set_solver_error(std::nan(""));
+    if (!lubricant.uncertainty_stated()) figure.set_standard_uncertainty(0);
     sheet.remark(std::string(label) + ": " + with_errors(figure, unit));
   };
   line("inefficiency, energy mean", point.inefficiency_energy_mean_percent(), "%");
