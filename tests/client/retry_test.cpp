@@ -61,7 +61,9 @@ TEST(Retry, RepeatsRequestsThatTheServerTurnedAway) {
   EXPECT_TRUE(was_turned_away(turned_away("TOO_MANY_STREAMS", 5)));
   EXPECT_TRUE(was_turned_away(turned_away("TOO_MANY_LARGE_REQUESTS", 5)));
   EXPECT_TRUE(was_turned_away(turned_away("TOO_MANY_CALLS", 5)));
+  EXPECT_TRUE(was_turned_away(turned_away("QUOTA_EXCEEDED", 5)));
   EXPECT_FALSE(was_turned_away(turned_away("STORE_FAILED", 5))) << "it may have been written";
+  EXPECT_FALSE(was_turned_away(turned_away("OUT_OF_MEMORY", 5))) << "it may have been written";
   EXPECT_FALSE(was_turned_away({grpc::StatusCode::UNAVAILABLE, "Socket closed"}));
   EXPECT_EQ(retry_delay(turned_away("SHUTTING_DOWN", 5)), milliseconds(5000));
   EXPECT_EQ(retry_delay({grpc::StatusCode::UNAVAILABLE, "Socket closed"}), std::nullopt);

@@ -88,11 +88,12 @@ void stream_columns(const Services& services, Stub& stub,
     if (status.ok()) return;
     const bool is_broken = status.error_code() == grpc::StatusCode::UNAVAILABLE ||
                            status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED;
-    if (!is_broken || tries_left-- == 0 || (never_connected(status) && !schema) ||
-        (!is_resumable && done > 0)) {
+    const auto requested = retry_delay(status);
+    if (!(is_broken || requested) || (!requested && tries_left-- == 0) ||
+        (never_connected(status) && !schema) || (!is_resumable && done > 0)) {
       throw service_error(status, services.address);
     }
-    std::this_thread::sleep_for(backoff.next(kBetweenReads));
+    std::this_thread::sleep_for(backoff.next(requested.value_or(kBetweenReads)));
   }
 }
 

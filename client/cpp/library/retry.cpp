@@ -42,6 +42,11 @@ std::optional<Detail> detail(const grpc::Status& status) {
   return std::nullopt;
 }
 
+std::string reason_of(const grpc::Status& status) {
+  const auto info = detail<google::rpc::ErrorInfo>(status);
+  return info ? info->reason() : "";
+}
+
 }  // namespace
 
 bool may_repeat(const Message& request) {
@@ -57,20 +62,19 @@ bool may_repeat(const Message& request) {
          is_set(request, "validate_only") || is_set(request, "request_id");
 }
 
-bool was_turned_away(const grpc::Status& status) {
-  const auto info = detail<google::rpc::ErrorInfo>(status);
-  static constexpr std::array<std::string_view, 5> kReasons = {
-      "SHUTTING_DOWN", "TOO_MANY_WAITING", "TOO_MANY_STREAMS", "TOO_MANY_LARGE_REQUESTS",
-      "TOO_MANY_CALLS"};
-  return info && std::find(kReasons.begin(), kReasons.end(), info->reason()) != kReasons.end();
-}
-
 std::optional<milliseconds> retry_delay(const grpc::Status& status) {
   const auto info = detail<google::rpc::RetryInfo>(status);
   if (!info) return std::nullopt;
   return milliseconds(1000 * info->retry_delay().seconds() +
-                      info->retry_delay().nanos() / 1'000'000);
+                      (info->retry_delay().nanos() + 999'999) / 1'000'000);
 }
+
+bool was_turned_away(const grpc::Status& status) {
+  const std::string reason = reason_of(status);
+  return retry_delay(status) && reason != "STORE_FAILED" && reason != "OUT_OF_MEMORY";
+}
+
+bool is_over_quota(const grpc::Status& status) { return reason_of(status) == "QUOTA_EXCEEDED"; }
 
 Backoff::Backoff() : random_(std::random_device()()), longest_(kFirstPause) {}
 

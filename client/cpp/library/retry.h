@@ -15,12 +15,15 @@ namespace tribodyn::client {
 /// create with a request_id). A second undelete is refused.
 bool may_repeat(const google::protobuf::Message& request);
 
+/// Returns the pause that the server requests before the next try; nullopt if it requests none.
+std::optional<std::chrono::milliseconds> retry_delay(const grpc::Status& status);
+
 /// Whether the status guarantees that the request had no effect and may succeed later: the server
-/// shuts down, or too many simulations wait, streams are open or large requests are worked on.
+/// requests a pause, for any reason but a failure amid the work.
 bool was_turned_away(const grpc::Status& status);
 
-/// Returns the pause that the server requests; nullopt if it requests none.
-std::optional<std::chrono::milliseconds> retry_delay(const grpc::Status& status);
+/// Whether the status says that a quota of the caller is spent.
+bool is_over_quota(const grpc::Status& status);
 
 /// Pauses between tries. They double and are random (full jitter), so that clients that failed
 /// together do not all retry together, and are never shorter than the server requests. Not safe for

@@ -62,15 +62,16 @@ struct Connection::Services {
   void prepare(grpc::ClientContext& context) const;
 
   /// Makes one call about the project within the time limit. Retries with pauses where that is
-  /// safe: when the server was lost or turned the request away.
+  /// safe: when the server was lost, and when it turned the request away and requests a pause;
+  /// without a limit while a quota is spent that lasts no longer than the time limit.
   template <class Stub, class Request, class Response>
   Response call(Stub& stub,
                 grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
                 Request request) const {
     using std::chrono::system_clock;
     add_project(project, request);
-    const auto deadline =
-        system_clock::now() + std::chrono::duration_cast<system_clock::duration>(timeout);
+    const auto limit = std::chrono::duration_cast<system_clock::duration>(timeout);
+    auto deadline = system_clock::now() + limit;
     Backoff backoff;
     bool was_connected = false;
     for (int tries = 1;; ++tries) {
@@ -92,11 +93,17 @@ struct Connection::Services {
         throw service_error(status, address);
       }
       was_connected = true;
-      const bool is_gone = status.error_code() == grpc::StatusCode::UNAVAILABLE &&
+      const auto requested = retry_delay(status);
+      const bool is_gone = (status.error_code() == grpc::StatusCode::UNAVAILABLE || requested) &&
                            (never_connected(status) || may_repeat(request));
-      const auto pause = backoff.next(retry_delay(status));
-      if (tries == kTries || !(is_gone || was_turned_away(status)) ||
-          system_clock::now() + pause >= deadline) {
+      const bool passes = is_over_quota(status) && requested && *requested <= limit;
+      if (passes) backoff.reset();
+      const auto pause = backoff.next(requested);
+      if (passes) {
+        tries = 0;
+        deadline = system_clock::now() + pause + limit;
+      } else if (tries == kTries || !(is_gone || was_turned_away(status)) ||
+                 system_clock::now() + pause >= deadline) {
         throw service_error(status, address);
       }
       std::this_thread::sleep_for(pause);

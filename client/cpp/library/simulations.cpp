@@ -158,6 +158,7 @@ void Connection::watch_some(const std::string& project, std::set<std::string> op
     }
     const grpc::Status status = reader->Finish();
     if (open.empty() || stop.stop_requested()) return;
+    const auto requested = retry_delay(status);
     if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED) {
       // A watch without any message, not even a heartbeat, was too short for one, or its server is
       // frozen. These calls throw if the server does not answer.
@@ -168,12 +169,12 @@ void Connection::watch_some(const std::string& project, std::set<std::string> op
       if (open.empty()) return;
     } else {
       const bool broken = status.ok() || status.error_code() == grpc::StatusCode::UNAVAILABLE;
-      if (!broken) throw service_error(status, address());
-      if (tries_left-- == 0) {
+      if (!broken && !requested) throw service_error(status, address());
+      if (!requested && tries_left-- == 0) {
         throw ServiceError(ServiceError::Kind::kCannotConnect, "lost the server at " + address());
       }
     }
-    if (!pause_unless_stopped(backoff.next(kBetweenWatches), stop)) return;
+    if (!pause_unless_stopped(backoff.next(requested.value_or(kBetweenWatches)), stop)) return;
   }
 }
 

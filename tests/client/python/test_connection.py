@@ -320,3 +320,59 @@ def test_a_server_on_another_machine_is_reached_by_tls(new_server, tmp_path, mon
     with pytest.raises(tribodyn.TribodynError) as caught:
         tribodyn.Client(address).lubricants.get(FLUID)
     assert caught.value.reason == "CANNOT_CONNECT"
+
+
+def guest_of(server, name, calls_per_second):
+    """Returns a client with a new token that may make so many calls a second."""
+    token = subprocess.run(
+        [
+            os.environ["TRIBODYND"],
+            "tokens",
+            "create",
+            name,
+            "--database",
+            server.folder / "db.sqlite",
+            "--calls-per-second",
+            str(calls_per_second),
+        ],
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout
+    path = server.folder / f"{name}.token"
+    path.touch(mode=0o600)
+    path.write_text(token, "utf-8")
+    return aio.Client(server.address, token_file=path)
+
+
+def test_a_guest_with_a_small_quota_of_calls_is_served_slower_and_whole(server):
+    async def run():
+        async with guest_of(server, "guest", 20) as client:
+            point = {"lubricant": FLUID, "speed_kilometres_per_hour": 55}
+            table = {"sump_temperature_celsius": np.linspace(30, 90, 60)}
+            evaluated = await asyncio.gather(
+                *(client.evaluate({"sump_temperature_celsius": [40 + i]}, **point) for i in range(150))
+            )
+            return await client.points(table, **point), evaluated
+
+    points, evaluated = asyncio.run(run())
+    assert set(points["status"]) == {"OK"} and len(points) == 60
+    assert all(set(each["status"]) == {"OK"} for each in evaluated)
+
+
+def test_a_call_after_a_fork_says_what_to_do(client):
+    client.lubricants.get(FLUID)
+    reader, writer = os.pipe()
+    child = os.fork()
+    if child == 0:
+        try:
+            client.lubricants.get(FLUID)
+            os.write(writer, b"answered")
+        except tribodyn.TribodynError as error:
+            os.write(writer, error.reason.encode() + b" " + str(error).encode())
+        os._exit(0)
+    os.close(writer)
+    os.waitpid(child, 0)
+    said = os.read(reader, 1000).decode()
+    os.close(reader)
+    assert said.startswith("FORKED") and "spawn" in said

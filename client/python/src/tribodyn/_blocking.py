@@ -6,6 +6,7 @@ import asyncio
 import atexit
 import functools
 import inspect
+import os
 import threading
 from typing import (
     Any,
@@ -17,6 +18,8 @@ from typing import (
     ParamSpec,
     TypeVar,
 )
+
+from tribodyn.errors import TribodynError
 
 P = ParamSpec("P")
 S = TypeVar("S")
@@ -31,9 +34,19 @@ class _Loop:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._loop: asyncio.AbstractEventLoop | None = None
+        self._process = 0  # that has the thread
 
     def run(self, work: Coroutine[Any, Any, T]) -> T:
-        """Runs the work to its end; an interruption (Ctrl-C) cancels it."""
+        """Runs the work to its end; an interruption (Ctrl-C) cancels it. Raises in a process that was
+        forked from one that used a client: it has neither the thread nor gRPC's."""
+        if self._loop is not None and self._process != os.getpid():
+            work.close()
+            raise TribodynError(
+                "this process was forked after its parent used a client, and gRPC does not survive a "
+                'fork; start processes by multiprocessing.get_context("spawn"), or make the first '
+                "call after the fork",
+                reason="FORKED",
+            )
         future = asyncio.run_coroutine_threadsafe(work, self._started())
         try:
             return future.result()
@@ -44,7 +57,7 @@ class _Loop:
     def _started(self) -> asyncio.AbstractEventLoop:
         with self._lock:
             if self._loop is None:
-                self._loop = asyncio.new_event_loop()
+                self._loop, self._process = asyncio.new_event_loop(), os.getpid()
                 # gRPC's poller reports a wake-up that another loop of the process has consumed.
                 self._loop.set_exception_handler(_report)
                 thread = threading.Thread(

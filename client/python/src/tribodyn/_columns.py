@@ -8,7 +8,7 @@ from typing import Any
 import grpc
 import numpy as np
 
-from tribodyn._transport import Backoff, Transport
+from tribodyn._transport import Backoff, Transport, requested_pause
 from tribodyn.errors import service_error
 from tribodyn.v1 import simulations_pb2 as pb
 
@@ -52,10 +52,11 @@ async def read_columns(
                 grpc.StatusCode.UNAVAILABLE,
                 grpc.StatusCode.DEADLINE_EXCEEDED,
             )
-            tries_left -= 1
-            if not broken or tries_left == 0:
+            requested = requested_pause(error)
+            tries_left -= requested is None
+            if not broken and requested is None or tries_left == 0:
                 raise service_error(error, transport.settings.server) from None
-            await asyncio.sleep(backoff.next(0.25))
+            await asyncio.sleep(backoff.next(requested or 0.25))
     assert schema is not None
     return schema, [np.concatenate(part) if part else np.empty(0) for part in parts]
 

@@ -8,8 +8,8 @@ from typing import Any, Awaitable, Callable, Sequence, Union
 import grpc
 
 from tribodyn._progress import Progress
-from tribodyn._transport import Backoff, Transport
-from tribodyn.errors import TribodynError, details_of, is_about_the_request, service_error
+from tribodyn._transport import Backoff, Transport, requested_pause
+from tribodyn.errors import TribodynError, is_about_the_request, service_error
 from tribodyn.v1 import simulations_pb2 as pb
 
 Outcome = Union[pb.Simulation, TribodynError]
@@ -134,7 +134,7 @@ class _Run:
 
         while open_:
             request.names[:] = list(open_)
-            was_silent = True
+            was_silent, requested = True, None
             try:
                 # A watch that does not end is restarted, to notice a connection that died silently.
                 async for event in self._transport.stream(
@@ -151,18 +151,19 @@ class _Run:
                         for index in open_[event.name]:
                             self._progress.update(str(index), event.progress_fraction)
             except grpc.aio.AioRpcError as error:
+                requested = requested_pause(error)
                 if error.code() is grpc.StatusCode.DEADLINE_EXCEEDED:
                     # A watch without any event, not even a heartbeat: the server is frozen, which
                     # this call raises, or the simulation has ended unnoticed.
                     if was_silent and open_:
                         await self._check_first(open_, ends)
-                elif error.code() is not grpc.StatusCode.UNAVAILABLE and not _is_passing(error):
+                elif error.code() is not grpc.StatusCode.UNAVAILABLE and requested is None:
                     raise service_error(error, self._transport.settings.server) from None
-                tries_left -= 1
+                tries_left -= requested is None
                 if tries_left == 0:
                     raise service_error(error, self._transport.settings.server) from None
             if open_:
-                await asyncio.sleep(backoff.next(0.25))
+                await asyncio.sleep(backoff.next(requested or 0.25))
 
     async def _check_first(self, open_: dict[str, list[int]], ends: Callable[[str], None]) -> None:
         name = next(iter(open_))
@@ -173,10 +174,6 @@ class _Run:
         )
         if simulation.state in _ENDED:
             ends(name)
-
-
-def _is_passing(error: grpc.aio.AioRpcError) -> bool:
-    return error.code() is grpc.StatusCode.RESOURCE_EXHAUSTED and details_of(error) is not None
 
 
 def _checked(simulation: Outcome) -> Outcome:

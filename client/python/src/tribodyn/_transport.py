@@ -6,6 +6,7 @@ from __future__ import annotations
 import asyncio
 import random
 import uuid
+from contextlib import AsyncExitStack
 from typing import Any, AsyncIterator, Iterator
 
 import grpc
@@ -25,14 +26,10 @@ _OPTIONS = (
     # As large as the server sends: a gear set may take 15 MiB.
     ("grpc.max_receive_message_length", 16 << 20),
 )
-# Reasons of errors that had no effect and pass.
-_TURNED_AWAY = {
-    "SHUTTING_DOWN",
-    "TOO_MANY_WAITING",
-    "TOO_MANY_STREAMS",
-    "TOO_MANY_LARGE_REQUESTS",
-    "TOO_MANY_CALLS",
-}
+# Reasons of a failure amid the work, which may have had its effect.
+_AMID_WORK = ("STORE_FAILED", "OUT_OF_MEMORY")
+# Calls over a quota that try again at once; the others wait in line, or all would fail together.
+_MOST_OVER_QUOTA = 8
 _REPEATABLE = ("Get", "List", "Evaluate", "Pause", "Resume", "Cancel", "Delete")
 
 
@@ -67,6 +64,7 @@ class Transport:
             self._metadata += (("authorization", f"Bearer {settings.token}"),)
         self._channel: grpc.aio.Channel | None = None
         self._was_connected = False
+        self._line = asyncio.Semaphore(_MOST_OVER_QUOTA)
 
     async def close(self) -> None:
         if self._channel is not None:
@@ -77,42 +75,54 @@ class Transport:
         self, service: str, method: str, request: Message, *, patient: bool = False
     ) -> Any:
         """Makes one call within the time limit. Retries, where that is safe, when the server is
-        lost or turns the request away; ``patient``: without a limit while it turns the request
-        away."""
+        lost, and when it turns the request away and requests a pause: without a limit if that
+        quota lasts no longer than the time limit, or if ``patient``."""
         self._add_project(request)
         loop = asyncio.get_running_loop()
         deadline = loop.time() + self.settings.timeout_seconds
         backoff = Backoff()
         function = self._function(service, method, request)
-        waited_for_connection = False
-        while True:
-            try:
-                answer = await function(
-                    request, timeout=max(0.001, deadline - loop.time()), metadata=self._metadata
-                )
-                self._was_connected = True
-                self._remove_project(answer)
-                return answer
-            except grpc.aio.AioRpcError as error:
-                status = details_of(error)
-                self._was_connected |= status is not None
-                never_sent = _never_connected(error)
-                if never_sent and not self._was_connected:
-                    # gRPC may report a connection in progress as failed: one more try.
-                    if waited_for_connection or not await self._is_ready(1.0):
+        waited_for_connection = is_in_line = False
+        async with AsyncExitStack() as line:
+            while True:
+                try:
+                    answer = await function(
+                        request, timeout=max(0.001, deadline - loop.time()), metadata=self._metadata
+                    )
+                    self._was_connected = True
+                    self._remove_project(answer)
+                    return answer
+                except grpc.aio.AioRpcError as error:
+                    status = details_of(error)
+                    self._was_connected |= status is not None
+                    never_sent = _never_connected(error)
+                    if never_sent and not self._was_connected:
+                        # gRPC may report a connection in progress as failed: one more try.
+                        if waited_for_connection or not await self._is_ready(1.0):
+                            raise service_error(error, self.settings.server) from None
+                        waited_for_connection = True
+                        continue
+                    requested = retry_delay_of(status) if status else None
+                    reason = reason_of(status) if status else ""
+                    is_gone = (
+                        error.code() is grpc.StatusCode.UNAVAILABLE or requested is not None
+                    ) and (never_sent or may_repeat(request))
+                    turned_away = requested is not None and reason not in _AMID_WORK
+                    is_over_quota = (
+                        reason == "QUOTA_EXCEEDED"
+                        and (requested or 0.0) <= self.settings.timeout_seconds
+                    )
+                    if is_over_quota and not is_in_line:
+                        await line.enter_async_context(self._line)
+                        is_in_line = True
+                    if is_over_quota:
+                        backoff.reset()
+                    pause = backoff.next(requested)
+                    if is_over_quota or (patient and turned_away):
+                        deadline = loop.time() + pause + self.settings.timeout_seconds
+                    elif not (is_gone or turned_away) or loop.time() + pause >= deadline:
                         raise service_error(error, self.settings.server) from None
-                    waited_for_connection = True
-                    continue
-                is_gone = error.code() is grpc.StatusCode.UNAVAILABLE and (
-                    never_sent or may_repeat(request)
-                )
-                turned_away = status is not None and reason_of(status) in _TURNED_AWAY
-                pause = backoff.next(retry_delay_of(status) if status else None)
-                if turned_away and patient:
-                    deadline = loop.time() + pause + self.settings.timeout_seconds
-                if not (is_gone or turned_away) or loop.time() + pause >= deadline:
-                    raise service_error(error, self.settings.server) from None
-                await asyncio.sleep(pause)
+                    await asyncio.sleep(pause)
 
     async def stream(
         self, service: str, method: str, request: Message, timeout: float | None = None
@@ -192,6 +202,13 @@ def may_repeat(request: Message) -> bool:
     if kind.startswith(("Delete", "Purge")) and "allow_missing" in fields:
         return is_set("allow_missing")
     return kind.startswith(_REPEATABLE) or is_set("validate_only") or is_set("request_id")
+
+
+def requested_pause(error: grpc.aio.AioRpcError) -> float | None:
+    """Returns the seconds after which a request that the server turned away may be sent again; None
+    for another error."""
+    status = details_of(error)
+    return retry_delay_of(status) if status else None
 
 
 def new_request_id() -> str:

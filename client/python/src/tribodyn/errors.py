@@ -32,7 +32,8 @@ class TribodynError(Exception):
     ``reason`` is stable, for programs: a value of ErrorReason without its prefix, e.g.
     "INVALID_FIELDS" or "NOT_FOUND"; "CANNOT_CONNECT" if nothing listens at the address or the
     connection was lost; "NO_ANSWER" if the time limit passed without an answer; "CANCELLED" for a
-    simulation that was cancelled, "SIMULATION_DELETED" for one that was deleted meanwhile.
+    simulation that was cancelled, "SIMULATION_DELETED" for one that was deleted meanwhile;
+    "FORKED" in a process that was forked after its parent used a client.
     """
 
     def __init__(

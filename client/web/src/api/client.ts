@@ -47,11 +47,28 @@ async function errorOf(response: Response): Promise<ApiError> {
   const details: any[] = body.details ?? [];
   const info = details.find((each) => each['@type'].endsWith('ErrorInfo'));
   const violations = details.flatMap((each) => each.field_violations ?? []);
-  const retry = Number(response.headers.get('Retry-After') ?? 0);
+  const retry = Number(info?.metadata?.retry_seconds ?? response.headers.get('Retry-After') ?? 0);
   return new ApiError(response.status, info?.reason ?? '', body.message, violations, retry);
 }
 
+const LONGEST_PAUSE = 60; // seconds
+const AMID_WORK = ['STORE_FAILED', 'OUT_OF_MEMORY']; // a change may have had its effect
+
+/** Sends a request. One that the server turns away for some seconds had no effect and is sent again after the pause that it requests. */
 async function send(path: string, init: RequestInit): Promise<Response> {
+  for (;;) {
+    try {
+      return await sendOnce(path, init);
+    } catch (failure) {
+      const { retryAfterSeconds: seconds, reason } = failure instanceof ApiError ? failure : { retryAfterSeconds: 0, reason: '' };
+      if (!(seconds > 0 && seconds <= LONGEST_PAUSE) || (init.method && AMID_WORK.includes(reason))) throw failure;
+      await new Promise((done) => setTimeout(done, 1000 * (seconds + 0.2 * Math.random())));
+      init.signal?.throwIfAborted();
+    }
+  }
+}
+
+async function sendOnce(path: string, init: RequestInit): Promise<Response> {
   let response: Response;
   try {
     response = await fetch(path, { credentials: 'same-origin', ...init });
