@@ -132,10 +132,19 @@ TEST(Csv, QuotesCellsThatReadersWouldMisread) {
             "a,\"b,c\",\"say \"\"x\"\"\",\"two\nlines\",\n");
 }
 
+TEST(Csv, AnApostropheStopsSpreadsheetsFromComputingTextsButNotNumbers) {
+  EXPECT_EQ(csv_line({"=HYPERLINK(1)", "+x", "-x", "@x", "\tx", "\rx", "-1.5e-9", "-inf", "a=b"}),
+            "'=HYPERLINK(1),'+x,'-x,'@x,\"'\tx\",\"'\rx\",-1.5e-9,-inf,a=b\n");
+}
+
 TEST(Csv, IsReadBackAsItWasWritten) {
-  const std::vector<std::vector<std::string>> rows = {
-      {"# no note"}, {"sep=", "", ""},        {""}, {" blanks ", "\ttab", "semi;colon"},
-      {"", "", ""},  {"ends\r", "\"", "\"\""}};
+  const std::vector<std::vector<std::string>> rows = {{"# no note"},
+                                                      {"sep=", "", ""},
+                                                      {""},
+                                                      {" blanks ", "\ttab", "semi;colon"},
+                                                      {"", "", ""},
+                                                      {"ends\r", "\"", "\"\""},
+                                                      {"=1+1", "'=2", "'plain", "@x", "-", "+5 C"}};
   std::string text = "name\n";
   for (const auto& row : rows) text += csv_line(row);
   const std::vector<CsvLine> lines = read_csv(text);

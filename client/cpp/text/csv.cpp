@@ -6,6 +6,7 @@
 #include <google/protobuf/util/time_util.h>
 
 #include <algorithm>
+#include <charconv>
 
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/warnings.h"
@@ -86,20 +87,35 @@ bool needs_quotes(std::string_view cell) {
                            cell.starts_with("sep="));
 }
 
+/// Whether a cell, its leading apostrophes aside, begins as a formula does.
+bool begins_as_formula(std::string_view cell) {
+  const std::size_t first = cell.find_first_not_of('\'');
+  return first != std::string_view::npos &&
+         std::string_view("=+-@\t\r").find(cell[first]) != std::string_view::npos;
+}
+
+bool is_number(std::string_view cell) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return error == std::errc() && end == cell.data() + cell.size();
+}
+
 }  // namespace
 
 std::string csv_line(const std::vector<std::string>& cells) {
-  std::string line;
+  std::string line, guarded;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (i > 0) line += ',';
-    const bool is_line =
-        cells.size() == 1 && cells.front().empty();  // a reader drops an empty line
-    if (!is_line && !needs_quotes(cells[i])) {
-      line += cells[i];
+    const bool is_formula = begins_as_formula(cells[i]) && !is_number(cells[i]);
+    if (is_formula) guarded = "'" + cells[i];
+    const std::string& cell = is_formula ? guarded : cells[i];
+    const bool is_line = cells.size() == 1 && cell.empty();  // a reader drops an empty line
+    if (!is_line && !needs_quotes(cell)) {
+      line += cell;
       continue;
     }
     line += '"';
-    for (const char c : cells[i]) line += c == '"' ? std::string("\"\"") : std::string(1, c);
+    for (const char c : cell) line += c == '"' ? std::string("\"\"") : std::string(1, c);
     line += '"';
   }
   return line + "\n";
@@ -211,6 +227,7 @@ class CsvReader {
     if (!more) ++line_;
     const auto is_blank = [](char c) { return c == ' ' || c == '\r'; };
     while (cell.size() > kept && is_blank(cell.back())) cell.pop_back();
+    if (cell.starts_with('\'') && begins_as_formula(cell)) cell.erase(0, 1);
     return more;
   }
 

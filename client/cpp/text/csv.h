@@ -13,7 +13,8 @@ namespace tribodyn::client {
 
 /// Returns one CSV line (RFC 4180, but with a plain line feed). Quotes a cell that other programs
 /// would misread: one that holds a separator, quote or line break, has blanks at its ends, or looks
-/// like a comment.
+/// like a comment. A text that a spreadsheet would compute, as it begins with =, +, -, @, a tab or
+/// a carriage return, gets a leading apostrophe, which read_csv() removes; a number gets none.
 std::string csv_line(const std::vector<std::string>& cells);
 
 /// One line of a CSV text.

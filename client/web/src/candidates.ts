@@ -59,6 +59,8 @@ export function tableOf(text: string): Table {
     }
   }
   endRow();
+  // The apostrophe that a CSV file of the service has before a text that a spreadsheet would compute.
+  for (const each of lines) each.cells = each.cells.map((text) => text.replace(/^'(?='*[=+\-@\t\r])/, ''));
   const [header, ...rows] = lines;
   return { header: header?.cells ?? [], rows, hasDecimalCommas: separator !== ',' };
 }

@@ -10,6 +10,8 @@ from typing import Any
 
 from tribodyn._frames import columns_of
 
+# The apostrophe that a CSV file of the service has before a text that a spreadsheet would compute.
+_FORMULA_GUARD = re.compile(r"^'(?='*[=+\-@\t\r])")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
 
 
@@ -43,7 +45,7 @@ def _read_csv(path: Path) -> list[dict[str, Any]]:
         return []
     separator = max(",;\t", key=lines[0].count)
     reader = csv.reader(lines, delimiter=separator)
-    header = [name.strip() for name in next(reader)]
+    header = [_FORMULA_GUARD.sub("", name.strip()) for name in next(reader)]
     rows = []
     for cells in reader:
         if len(cells) != len(header):
@@ -56,5 +58,6 @@ def _read_csv(path: Path) -> list[dict[str, Any]]:
             texts = [
                 text.replace(",", ".") if _DECIMAL_COMMA.fullmatch(text) else text for text in texts
             ]
+        texts = [_FORMULA_GUARD.sub("", text) for text in texts]
         rows.append({name: text or None for name, text in zip(header, texts)})
     return rows

@@ -49,6 +49,11 @@ export function TakeAway({ name, spec, footer = [], csv, requests, commands, lin
   );
 }
 
-/** A table as CSV, with all digits of the service; an empty cell is no number. */
+/** A table as CSV, with all digits of the service; an empty cell is no number. An apostrophe stops spreadsheets from computing a text. */
 export const csvOf = (header: string[], rows: (number | string | null)[][]): string =>
-  [header, ...rows].map((row) => row.map((cell) => cell ?? '').join(',')).join('\n') + '\n';
+  [header, ...rows].map((row) => row.map((cell) => (typeof cell === 'string' ? csvText(cell) : cell ?? '')).join(',')).join('\n') + '\n';
+
+function csvText(text: string): string {
+  const guarded = /^'*[=+\-@\t\r]/.test(text) && (text.trim() === '' || Number.isNaN(Number(text))) ? `'${text}` : text;
+  return /[",;\t\r\n]|^[ #]| $/.test(guarded) ? `"${guarded.replaceAll('"', '""')}"` : guarded;
+}

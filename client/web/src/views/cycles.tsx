@@ -419,7 +419,7 @@ function Origins({ answer, names }: { answer: EvaluateCycleResponse; names: stri
 /** Every piece, with all digits of the service. */
 function tableOfPieces(answer: EvaluateCycleResponse, names: string[]): string {
   const columns = ['start_seconds', 'piece_seconds', 'speed_kilometres_per_hour', 'acceleration_metres_per_second_squared', 'ascent_angle_degrees', 'sump_temperature_celsius', 'wheel_torque_newton_metres'] as const;
-  return csvOf([...columns, ...names.map((name) => `"mesh_loss_power_watts of ${name.replaceAll('"', '""')}"`)],
+  return csvOf([...columns, ...names.map((name) => `mesh_loss_power_watts of ${name}`)],
     (answer.start_seconds ?? []).map((_, row) => [
       ...columns.map((column) => answer[column]?.[row] ?? null), ...(answer.lubricants ?? []).map((fluid) => finite(fluid.mesh_loss_power_watts?.[row])),
     ]));

@@ -228,7 +228,7 @@ function tableOf(curves: RigCurve[], titleOf: (fluid: string) => string): string
   const uncertain = RIG_QUANTITIES.filter((quantity) => curves.some((curve) => curve.x.some((_, row) => rigBand(curve, quantity, row) !== null)));
   return csvOf(['fluid', 'variant', 'x', ...RIG_QUANTITIES.map((each) => each.column as string),
     ...uncertain.flatMap((each) => ['standard_uncertainty', 'interval_minimum', 'interval_maximum'].map((end) => `${each.column}_${end}`)), 'warnings'],
-  curves.flatMap((curve) => curve.x.map((x, row) => [titleOf(curve.fluid), `"${curve.label}"`, x, ...RIG_QUANTITIES.map((each) => rigValue(curve, each, row)),
+  curves.flatMap((curve) => curve.x.map((x, row) => [titleOf(curve.fluid), curve.label, x, ...RIG_QUANTITIES.map((each) => rigValue(curve, each, row)),
     ...uncertain.flatMap((each) => {
       const band = rigBand(curve, each, row);
       return [finite(band?.standard_uncertainty), finite(band?.interval_minimum), finite(band?.interval_maximum)];
