@@ -9,28 +9,37 @@ std::size_t index_of(Urgency urgency) { return static_cast<std::size_t>(urgency)
 
 }  // namespace
 
+std::size_t FairQueue::group_of(const QueuedJob& job) {
+  return campaign_part(job.id) ? kSlices : index_of(job.urgency());
+}
+
 void FairQueue::push(const QueuedJob& job) {
   const auto [found, is_new] = principals_.try_emplace(job.principal);
   Principal& principal = found->second;
   if (is_new) principal.served_seconds = take_debt(job.principal);
   principal.served_seconds = std::max(principal.served_seconds, now_);
   const Place place{principal.served_seconds + job.cost_seconds, ++arrivals_};
-  principal.jobs_by_urgency[index_of(job.urgency())].emplace(place, job);
+  principal.groups[group_of(job)].emplace(place, job);
   principal.cost_seconds += job.cost_seconds;
   cost_seconds_ += job.cost_seconds;
-  places_[job.id] = {job.principal, place, job.urgency()};
+  places_[job.id] = {job.principal, place, group_of(job)};
   set_turns(found);
 }
 
 const FairQueue::Jobs::value_type* FairQueue::first_of(const Principal& principal, Urgency least) {
-  const auto first = [&](Urgency urgency) {
-    const Jobs& jobs = principal.jobs_by_urgency[index_of(urgency)];
+  const auto first = [&](std::size_t group) {
+    const Jobs& jobs = principal.groups[group];
     return jobs.empty() ? nullptr : &*jobs.begin();
   };
-  const auto* interactive = first(Urgency::kInteractive);
+  const auto* interactive = first(index_of(Urgency::kInteractive));
   if (interactive != nullptr || least == Urgency::kInteractive) return interactive;
-  const auto* small = first(Urgency::kSmall);
-  const auto* large = least == Urgency::kBulk ? first(Urgency::kBulk) : nullptr;
+  const auto* small = first(index_of(Urgency::kSmall));
+  const auto* slice = first(kSlices);
+  const auto* large = least == Urgency::kBulk ? first(index_of(Urgency::kBulk)) : nullptr;
+  if (slice != nullptr &&
+      (small == nullptr || slice->first.first + kSlicePatienceSeconds < small->first.first)) {
+    small = slice;
+  }
   if (small == nullptr || large == nullptr) return small == nullptr ? large : small;
   return small->first < large->first ? small : large;
 }
@@ -65,7 +74,7 @@ std::optional<QueuedJob> FairQueue::pop(Urgency least) {
   const auto [place, job] = *first_of(principal->second, least);
   now_ = std::max(now_, principal->second.served_seconds);
   principal->second.served_seconds += job.cost_seconds;
-  remove(principal, place, job.urgency());
+  remove(principal, place, group_of(job));
   forgive();
   return job;
 }
@@ -73,13 +82,13 @@ std::optional<QueuedJob> FairQueue::pop(Urgency least) {
 bool FairQueue::erase(std::int64_t id) {
   const auto found = places_.find(id);
   if (found == places_.end()) return false;
-  const auto [principal, place, urgency] = found->second;
-  remove(principals_.find(principal), place, urgency);
+  const auto [principal, place, group] = found->second;
+  remove(principals_.find(principal), place, group);
   return true;
 }
 
-void FairQueue::remove(Principals::iterator principal, const Place& place, Urgency urgency) {
-  Jobs& jobs = principal->second.jobs_by_urgency[index_of(urgency)];
+void FairQueue::remove(Principals::iterator principal, const Place& place, std::size_t group) {
+  Jobs& jobs = principal->second.groups[group];
   const auto job = jobs.find(place);
   cost_seconds_ -= job->second.cost_seconds;
   principal->second.cost_seconds -= job->second.cost_seconds;

@@ -26,6 +26,9 @@ enum class Urgency {
   kBulk,         ///< all others
 };
 
+/// Service of its principal for which a slice of a campaign waits behind small jobs [s].
+inline constexpr double kSlicePatienceSeconds = 60;
+
 /// Largest number of threads that compute one campaign at a time.
 inline constexpr int kMostCampaignParts = 256;
 
@@ -65,8 +68,10 @@ struct QueuedJob {
 /// away, and still owes what its jobs used beyond their estimates). Of one principal, interactive
 /// jobs come first. The other jobs follow in the order of their estimate plus the service that the
 /// principal had received when the job arrived: a large job waits for as much other work as its own
-/// estimate. Each call takes a time that grows with the logarithm of the number of waiting jobs.
-/// Not safe for concurrent access.
+/// estimate. A slice of a campaign also waits for small jobs that arrived later, so that a person
+/// does not wait behind the campaigns of the same principal, but for kSlicePatienceSeconds of
+/// service at most. Each call takes a time that grows with the logarithm of the number of waiting
+/// jobs. Not safe for concurrent access.
 class FairQueue {
  public:
   void push(const QueuedJob& job);
@@ -92,31 +97,33 @@ class FairQueue {
 
  private:
   static constexpr int kUrgencies = 3;
+  static constexpr int kSlices = kUrgencies;  // slices of campaigns, apart from other small jobs
   /// Rank, then order of arrival.
   using Place = std::pair<double, std::int64_t>;
   using Jobs = std::map<Place, QueuedJob>;
   /// Service that the principal has received, arrival number of its next job, principal.
   using Turn = std::tuple<double, std::int64_t, std::string>;
   struct Principal {
-    double served_seconds = 0;  ///< virtual time
-    double cost_seconds = 0;    ///< estimate of its waiting jobs
-    std::array<Jobs, kUrgencies> jobs_by_urgency;
+    double served_seconds = 0;                          ///< virtual time
+    double cost_seconds = 0;                            ///< estimate of its waiting jobs
+    std::array<Jobs, kUrgencies + 1> groups;            ///< by urgency; kSlices
     std::array<std::optional<Turn>, kUrgencies> turns;  ///< the entries in turns_
     std::size_t size() const {
-      return jobs_by_urgency[0].size() + jobs_by_urgency[1].size() + jobs_by_urgency[2].size();
+      return groups[0].size() + groups[1].size() + groups[2].size() + groups[kSlices].size();
     }
   };
   using Principals = std::map<std::string, Principal>;
 
+  static std::size_t group_of(const QueuedJob& job);
   static const Jobs::value_type* first_of(const Principal& principal, Urgency least);
   void set_turns(Principals::iterator principal);
-  void remove(Principals::iterator principal, const Place& place, Urgency urgency);
+  void remove(Principals::iterator principal, const Place& place, std::size_t group);
   void remember(const std::string& principal, double served_seconds);
   double take_debt(const std::string& principal);
   void forgive();
 
   Principals principals_;  // those with jobs
-  std::map<std::int64_t, std::tuple<std::string, Place, Urgency>> places_;
+  std::map<std::int64_t, std::tuple<std::string, Place, std::size_t>> places_;
   std::array<std::set<Turn>, kUrgencies> turns_;  // by least urgency: which principal is next
   double cost_seconds_ = 0;
   double now_ = 0;  // virtual time: service of the principal of the latest job before that job

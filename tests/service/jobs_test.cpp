@@ -62,6 +62,33 @@ TEST(FairQueue, SmallJobsOfAPrincipalPassLargeOnesThatDoNotStarve) {
   FAIL() << "the large one never came";
 }
 
+TEST(FairQueue, APersonDoesNotWaitBehindTheCampaignsOfTheSamePrincipal) {
+  FairQueue queue;
+  const auto slice = [&queue](int campaign) {
+    queue.push({campaign_part_id(campaign, 0), "a", 0.05});
+  };
+  for (int campaign = 1; campaign <= 100; ++campaign) slice(campaign);
+  for (int i = 0; i < 150; ++i) {
+    const std::int64_t id = queue.pop(Urgency::kBulk)->id;
+    slice(static_cast<int>(campaign_part(id)->campaign));
+  }
+  queue.push({1, "a", 0.5});
+  EXPECT_EQ(queue.peek(Urgency::kSmall)->id, 1);
+  EXPECT_EQ(queue.pop(Urgency::kBulk)->id, 1);
+  EXPECT_TRUE(campaign_part(queue.peek(Urgency::kSmall)->id));
+}
+
+TEST(FairQueue, SlicesOfCampaignsDoNotStarveBehindSmallJobs) {
+  FairQueue queue;
+  queue.push({campaign_part_id(1, 0), "a", 0.05});
+  double served = 0;
+  for (int id = 1; served < 3 * kSlicePatienceSeconds; ++id, served += 0.5) {
+    queue.push({id, "a", 0.5});  // new jobs keep arriving
+    if (campaign_part(queue.pop(Urgency::kBulk)->id)) break;
+  }
+  EXPECT_NEAR(served, kSlicePatienceSeconds, 1);
+}
+
 TEST(FairQueue, CountsQueuedJobs) {
   FairQueue queue;
   queue.push({1, "a", 2});
