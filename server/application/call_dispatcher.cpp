@@ -136,14 +136,6 @@ bool is_short(const Method& method, const google::protobuf::Message& request) {
   return method.lane == CallLane::kRead || (method.is_short != nullptr && method.is_short(request));
 }
 
-std::string reason_of(const google::rpc::Status& status) {
-  google::rpc::ErrorInfo info;
-  for (const auto& detail : status.details()) {
-    if (detail.UnpackTo(&info)) break;
-  }
-  return info.reason();
-}
-
 }  // namespace
 
 CallDispatcher::CallDispatcher(Application& application, const TimeLimits& limits)

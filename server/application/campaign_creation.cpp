@@ -55,24 +55,40 @@ void keep_stated(const v1::Campaign& stated, int created_candidates, v1::Campaig
   if (earlier.has_candidate_design() && stated.candidate_design().algorithm_version() == 0) {
     earlier.mutable_candidate_design()->clear_algorithm_version();
   }
-  // Name and labels may have changed since; where they alone seem to differ, they are named.
 }
 
-google::rpc::Status campaign_request_id_taken(Application& application,
-                                              const StoredCampaign& stored,
-                                              const v1::CreateCampaignRequest& request,
-                                              const v1::Campaign& stated, const CallContext& call) {
+/// Returns the first field in which a stored campaign differs from a request under its request_id;
+/// empty if it differs in none. Of the request that made it: among those that UpdateCampaign
+/// changes in effect, as a repeated request does not undo a new name or new labels.
+std::string differing_field(Application& application, const StoredCampaign& stored,
+                            const v1::Campaign& stated, const CallContext& call) {
   v1::Campaign earlier;
   earlier.ParseFromString(stored.request);
   earlier.MergeFromString(application.store.candidate_table(stored.id, call.limits));
   keep_stated(stated, application.store.created_candidates(stored.id, call.limits), earlier);
-  std::string field = "none";
+  const bool made_it = stored.request_hash == request_hash(stated);
   const auto& type = *v1::Campaign::descriptor();
   for (int i = 0; i < type.field_count(); ++i) {
+    const int number = type.field(i)->number();
+    if (made_it && number != v1::Campaign::kConditionWeightsFieldNumber &&
+        number != v1::Campaign::kCandidateAttributesFieldNumber) {
+      continue;
+    }
     google::protobuf::util::MessageDifferencer differencer;
     if (differencer.CompareWithFields(earlier, stated, {type.field(i)}, {type.field(i)})) continue;
-    field = "campaign." + type.field(i)->name();
-    break;
+    return "campaign." + type.field(i)->name();
+  }
+  return "";
+}
+
+/// The answer to a request whose request_id made the stored campaign.
+Outcome<v1::Campaign> repeated_answer(Application& application, const StoredCampaign& stored,
+                                      const v1::CreateCampaignRequest& request,
+                                      const v1::Campaign& stated, const CallContext& call) {
+  const std::string field = differing_field(application, stored, stated, call);
+  if (field.empty()) {
+    application.jobs.campaigns().ensure_queued(stored);
+    return to_message(application, stored);
   }
   return already_exists(
       v1::ERROR_REASON_REQUEST_ID_REUSED, kCampaignType, name_of(stored),
@@ -80,17 +96,6 @@ google::rpc::Status campaign_request_id_taken(Application& application,
                   request.request_id(), name_of(stored), field),
       {{"request_id", request.request_id()}, {"field", field}},
       {{"request_id", fmt::format("belongs to another request; it differs in {}", field)}});
-}
-
-/// The answer to a request whose request_id made the stored campaign.
-Outcome<v1::Campaign> repeated_answer(Application& application, const StoredCampaign& stored,
-                                      const v1::CreateCampaignRequest& request,
-                                      const v1::Campaign& stated, const CallContext& call) {
-  if (stored.request_hash != request_hash(stated)) {
-    return campaign_request_id_taken(application, stored, request, stated, call);
-  }
-  application.jobs.campaigns().ensure_queued(stored);
-  return to_message(application, stored);
 }
 
 NewCampaign new_campaign(const v1::CreateCampaignRequest& request, const CampaignInputs& inputs,

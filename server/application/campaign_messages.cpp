@@ -47,6 +47,18 @@ v1::Campaign to_message(Application& application, const StoredCampaign& stored) 
   out.set_model_version(stored.model_version);
   out.set_request_id(stored.request_id);
   out.set_stored_bytes(stored.stored_bytes);
+  if (const auto stalled = stall_of(application.jobs.campaigns(), stored.id))
+    *out.mutable_stalled() = *stalled;
+  return out;
+}
+
+std::optional<v1::CampaignStop> stall_of(CampaignJobs& campaigns, std::int64_t campaign) {
+  const auto cause = campaigns.stalled(campaign);
+  if (!cause) return std::nullopt;
+  const google::rpc::Status error = store_failed(*cause);
+  v1::CampaignStop out;
+  out.set_reason(reason_of(error));
+  out.set_message(error.message() + "; the campaign continues by itself once it can be written");
   return out;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "google/rpc/status.pb.h"
@@ -17,6 +19,8 @@ inline constexpr int kCampaignWrites = 10;
 
 /// Returns the stored campaign as a message, without what only GetCampaign answers.
 v1::Campaign to_message(Application& application, const StoredCampaign& stored);
+/// Returns why a campaign makes no progress; nullopt if it is not stalled.
+std::optional<v1::CampaignStop> stall_of(CampaignJobs& campaigns, std::int64_t campaign);
 CampaignBudget to_budget(const v1::CampaignBudget& budget);
 
 /// Returns NOT_FOUND.

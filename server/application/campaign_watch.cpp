@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "server/application/campaign_messages.h"
 #include "server/application/campaigns.h"
 #include "server/application/errors.h"
 
@@ -11,12 +12,13 @@ namespace tribodyn::server {
 namespace {
 
 /// Returns a number that differs between any two states of a campaign: the numbers of candidates
-/// and rows only grow, and while they are equal only the state changes. Below 2^53, which
-/// JavaScript keeps exactly: of 25 bits for points, 25 for those that are done and 3 for the state.
-std::int64_t version_of(const CampaignProgress& progress) {
-  constexpr std::int64_t kStates = 8, kPoints = std::int64_t{1} << 25;
+/// and rows only grow, and while they are equal only the state changes, or whether it is stalled.
+/// Below 2^53, which JavaScript keeps exactly: of 25 bits for points, 25 for those that are done
+/// and 3 for the state.
+std::int64_t version_of(const CampaignProgress& progress, bool is_stalled) {
+  constexpr std::int64_t kStates = 8, kStalled = 7, kPoints = std::int64_t{1} << 25;
   return (progress.points * kPoints + progress.points_done) * kStates +
-         static_cast<std::int64_t>(progress.state);
+         (is_stalled ? kStalled : static_cast<std::int64_t>(progress.state));
 }
 
 /// How far one campaign is. Holds nothing but the present state, so that a slow reader costs no
@@ -55,12 +57,15 @@ class CampaignWatch final : public MessageSource<v1::CampaignEvent> {
     }
     is_over_ = has_ended(progress->state);
     first_missing_row_ = progress->first_missing_row;
-    const std::int64_t version = version_of(*progress);
+    const auto stalled = stall_of(jobs_.campaigns(), campaign_);
+    const std::int64_t version = version_of(*progress, stalled.has_value());
     if (version == told_version_ && !is_quiet) return is_over_ ? Step::kEnd : Step::kWait;
-    out.set_kind(kind_of(*progress, version));
+    out.set_kind(kind_of(*progress, stalled.has_value(), version));
     fill(*progress, version, out);
+    if (stalled) *out.mutable_stalled() = *stalled;
     told_version_ = version;
     told_state_ = progress->state;
+    told_stalled_ = stalled.has_value();
     last_message_ = Steady::now();
     return Step::kMessage;
   }
@@ -73,10 +78,12 @@ class CampaignWatch final : public MessageSource<v1::CampaignEvent> {
  private:
   using Steady = std::chrono::steady_clock;
 
-  v1::CampaignEvent::Kind kind_of(const CampaignProgress& progress, std::int64_t version) const {
+  v1::CampaignEvent::Kind kind_of(const CampaignProgress& progress, bool is_stalled,
+                                  std::int64_t version) const {
     if (version == told_version_) return v1::CampaignEvent::HEARTBEAT;
-    return told_state_ == progress.state ? v1::CampaignEvent::PROGRESS
-                                         : v1::CampaignEvent::STATE_CHANGE;
+    return told_state_ == progress.state && told_stalled_ == is_stalled
+               ? v1::CampaignEvent::PROGRESS
+               : v1::CampaignEvent::STATE_CHANGE;
   }
 
   static void fill(const CampaignProgress& progress, std::int64_t version, v1::CampaignEvent& out) {
@@ -100,6 +107,7 @@ class CampaignWatch final : public MessageSource<v1::CampaignEvent> {
   const std::string name_;
   std::int64_t told_version_;
   std::optional<CampaignState> told_state_;  // empty before the first event
+  bool told_stalled_ = false;
   std::int64_t first_missing_row_ = 0;
   std::uint64_t seen_changes_ = 0;  // Store::campaign_changes() before the last read
   bool is_over_ = false;

@@ -16,11 +16,14 @@
 #include "server/application/project_space.h"
 #include "server/application/read_mask.h"
 #include "server/contract/check_message.h"
+#include "server/simulation/campaign_inputs.h"
 
 namespace tribodyn::server {
 namespace {
 
 constexpr int kDefaultCampaignPage = 50;
+// What an update may change beside the name and the labels.
+constexpr char kWeights[] = "condition_weights", kAttributes[] = "candidate_attributes";
 constexpr int kCampaignDeletions = 10;  // attempts, against others that resume it
 // Fields of an answer that are read from the rows of a campaign, and from its table of candidates.
 constexpr std::array<std::string_view, 2> kRowsState = {"first_missing_row", "refusals"};
@@ -42,6 +45,31 @@ void add_rows_state(Application& application, const StoredCampaign& stored, cons
     refusal.set_reason(each.reason);
     refusal.set_message(each.message);
   }
+}
+
+/// Takes over the weights and the attributes that an update changes. Returns the table of
+/// candidates with the new attributes; nullopt if they stay.
+std::optional<v1::Campaign> take_over_descriptions(Application& application,
+                                                   const StoredCampaign& stored,
+                                                   const v1::UpdateCampaignRequest& request,
+                                                   v1::Campaign& changed, const CallContext& call,
+                                                   Violations& violations) {
+  const auto& paths = request.update_mask().paths();
+  const auto asks_for = [&paths](const char* path) {
+    return std::find(paths.begin(), paths.end(), path) != paths.end();
+  };
+  if (!asks_for(kWeights) && !asks_for(kAttributes)) return std::nullopt;
+  v1::Campaign table;
+  table.ParseFromString(application.store.candidate_table(stored.id, call.limits));
+  if (asks_for(kWeights)) {
+    *changed.mutable_condition_weights() = request.campaign().condition_weights();
+  }
+  if (asks_for(kAttributes)) {
+    replace_attributes(request.campaign().candidate_attributes(), table, violations);
+  }
+  check_descriptions(changed, table, stored.candidates, "campaign", violations);
+  if (!asks_for(kAttributes)) return std::nullopt;
+  return table;
 }
 
 /// The answer to a request that changed a campaign's state.
@@ -134,10 +162,20 @@ Outcome<v1::Campaign> update_campaign(Application& application,
     v1::Campaign changed;
     changed.ParseFromString(found.message().request);
     Violations violations;
-    take_over_labels(request.update_mask(), request.campaign(), "campaign", changed, violations);
+    take_over_labels(request.update_mask(), request.campaign(), "campaign", changed, violations,
+                     {kWeights, kAttributes});
+    std::optional<v1::Campaign> table;
+    if (violations.empty()) {
+      table =
+          take_over_descriptions(application, found.message(), request, changed, call, violations);
+    }
     if (!violations.empty()) return invalid(violations);
-    const auto updated = application.store.relabel_campaign(
-        found.message(), changed.SerializeAsString(), labels_of(changed), call.limits);
+    if (table) {
+      if (auto full = project_full(application, call)) return *std::move(full);
+    }
+    const auto updated = application.store.describe_campaign(
+        found.message(), changed.SerializeAsString(), labels_of(changed),
+        table ? std::optional(table->SerializeAsString()) : std::nullopt, call.limits);
     if (updated) return to_message(application, *updated);
   }
   return contention(kCampaignType, name);

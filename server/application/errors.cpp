@@ -84,6 +84,14 @@ std::string reason_text(v1::ErrorReason reason) {
   return v1::ErrorReason_Name(reason).substr(kPrefix.size());
 }
 
+std::string reason_of(const google::rpc::Status& status) {
+  google::rpc::ErrorInfo info;
+  for (const auto& detail : status.details()) {
+    if (detail.UnpackTo(&info)) break;
+  }
+  return info.reason();
+}
+
 google::rpc::Status error(google::rpc::Code code, v1::ErrorReason reason,
                           const std::string& message, const ErrorMetadata& metadata) {
   return make_error(code, reason_text(reason), message, metadata);
@@ -163,7 +171,9 @@ google::rpc::Status store_failed(const StoreError& failure) {
                                 "the database's file was deleted, renamed or replaced on the "
                                 "server; nothing is written until it is back")
                         : error(google::rpc::UNAVAILABLE, v1::ERROR_REASON_STORE_FAILED,
-                                "the database could not be read or written"),
+                                failure.kind() == StoreError::Kind::kFull
+                                    ? "the disk of the database is full"
+                                    : "the database could not be read or written"),
                     kStoreSeconds);
 }
 
@@ -175,13 +185,16 @@ google::rpc::Status exhausted(v1::ErrorReason reason, const std::string& message
 }
 
 google::rpc::Status over_quota(const std::string& taker, const std::string& quota,
-                               const std::string& limit, double retry_seconds) {
-  const std::string seconds = fmt::format("{:.3g}", retry_seconds);
-  return with_retry(
-      error(google::rpc::RESOURCE_EXHAUSTED, v1::ERROR_REASON_QUOTA_EXCEEDED,
-            fmt::format("the quota of {} is {}; try again in {} s", taker, limit, seconds),
-            {{"quota", quota}, {"limit", limit}, {"retry_seconds", seconds}}),
-      retry_seconds);
+                               const std::string& limit, std::optional<double> retry_seconds) {
+  std::string message = fmt::format("the quota of {} is {}", taker, limit);
+  ErrorMetadata metadata{{"quota", quota}, {"limit", limit}};
+  if (retry_seconds) {
+    metadata["retry_seconds"] = fmt::format("{:.3g}", *retry_seconds);
+    message += "; try again in " + metadata["retry_seconds"] + " s";
+  }
+  auto out =
+      error(google::rpc::RESOURCE_EXHAUSTED, v1::ERROR_REASON_QUOTA_EXCEEDED, message, metadata);
+  return retry_seconds ? with_retry(std::move(out), *retry_seconds) : out;
 }
 
 google::rpc::Status deadline_exceeded() {

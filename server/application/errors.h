@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -22,6 +23,8 @@ using ErrorMetadata = std::map<std::string, std::string>;
 
 /// Returns "NOT_FOUND" for ERROR_REASON_NOT_FOUND.
 std::string reason_text(v1::ErrorReason reason);
+/// Returns the reason that an error states; empty for OK.
+std::string reason_of(const google::rpc::Status& status);
 
 // The functions below return errors. Each has an ErrorInfo with domain, reason and metadata.
 
@@ -73,11 +76,11 @@ google::rpc::Status store_failed(const StoreError& failure);
 google::rpc::Status exhausted(v1::ErrorReason reason, const std::string& message,
                               double retry_seconds);
 
-/// RESOURCE_EXHAUSTED with RetryInfo: `taker` ("anna", "project axles") has taken all that its
-/// quota allows. `quota` is the setting without its dashes, e.g. "calls-per-second"; `limit` its
-/// value and unit.
+/// RESOURCE_EXHAUSTED: `taker` ("anna", "project axles") has taken all that its quota allows.
+/// `quota` is the setting without its dashes, e.g. "calls-per-second"; `limit` its value and unit.
+/// With RetryInfo unless waiting alone does not help.
 google::rpc::Status over_quota(const std::string& taker, const std::string& quota,
-                               const std::string& limit, double retry_seconds);
+                               const std::string& limit, std::optional<double> retry_seconds);
 
 /// DEADLINE_EXCEEDED: the client's deadline or the server's limit passed. Requires that nothing was
 /// committed.

@@ -2,6 +2,7 @@
 
 #include <google/protobuf/field_mask.pb.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,9 +24,11 @@ std::vector<std::pair<std::string, std::string>> labels_of(const Resource& messa
 
 /// Copies the display name and the labels that an update changes from `stated` into `target`, and
 /// checks them. `path`: of `stated` in the request. An empty mask means the fields that are set.
+/// `others`: paths that the mask may have too.
 template <class Resource>
 void take_over_labels(const google::protobuf::FieldMask& mask, const Resource& stated,
-                      const std::string& path, Resource& target, Violations& violations) {
+                      const std::string& path, Resource& target, Violations& violations,
+                      const std::vector<std::string>& others = {}) {
   const auto& paths = mask.paths();
   const bool is_all = paths.size() == 1 && paths.Get(0) == "*";
   bool takes_name = is_all || (paths.empty() && !stated.display_name().empty());
@@ -35,9 +38,11 @@ void take_over_labels(const google::protobuf::FieldMask& mask, const Resource& s
       takes_name = true;
     } else if (paths.Get(i) == "labels") {
       takes_labels = true;
-    } else {
-      violations.add("update_mask", "\"{}\" cannot be changed; allowed: display_name, labels, *",
-                     plain_excerpt(paths.Get(i)));
+    } else if (std::find(others.begin(), others.end(), paths.Get(i)) == others.end()) {
+      std::string allowed = "display_name, labels";
+      for (const std::string& each : others) allowed += ", " + each;
+      violations.add("update_mask", "\"{}\" cannot be changed; allowed: {}, *",
+                     plain_excerpt(paths.Get(i)), allowed);
       return;
     }
   }

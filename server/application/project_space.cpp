@@ -7,7 +7,6 @@
 namespace tribodyn::server {
 
 std::optional<google::rpc::Status> project_full(Application& application, const CallContext& call) {
-  constexpr double kRetryAfterDeletion = 60;  // [s]; somebody has to delete some first
   const std::int64_t most = application.project_bytes;
   if (most <= 0 || application.store.result_bytes(call.project, call.limits) < most) {
     return std::nullopt;
@@ -16,17 +15,22 @@ std::optional<google::rpc::Status> project_full(Application& application, const 
       "project " + call.project, "project-megabytes",
       fmt::format("{:.3g} MB of results; delete simulations and campaigns that nobody needs",
                   1e-6 * static_cast<double>(most)),
-      kRetryAfterDeletion);
+      std::nullopt);
 }
 
 std::optional<google::rpc::Status> take_hours(Application& application, double cost_seconds,
                                               const CallContext& call, WorkPlace& place) {
   constexpr double kRetrySeconds = 10;
-  const auto over = [](const std::string& whose, const std::string& quota, double hours) {
+  const auto over = [&](const std::string& whose, const std::string& quota, double hours) {
+    const bool can_fit = cost_seconds <= 3600 * hours;
     return over_quota(
         whose, quota,
-        fmt::format("{:.3g} processor hours of simulations and campaigns that wait and run", hours),
-        kRetrySeconds);
+        fmt::format("{:.3g} processor hours of simulations and campaigns that wait and run{}",
+                    hours,
+                    can_fit ? ""
+                            : fmt::format("; this one alone takes about {:.3g}: divide it",
+                                          cost_seconds / 3600)),
+        can_fit ? std::optional(kRetrySeconds) : std::nullopt);
   };
   const double principals = call.grant->quota.processor_hours;
   if (principals > 0) {

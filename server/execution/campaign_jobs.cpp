@@ -57,6 +57,7 @@ void CampaignJobs::activate(const StoredCampaign& campaign,
     // Before the entry can be seen: who finds it halted and idle removes it.
     const std::lock_guard inner(running->mutex);
     running->is_halted = false;
+    running->stalled.reset();
     running->submitted = std::move(inputs);
   }
   start_parts(*running);
@@ -132,6 +133,13 @@ void CampaignJobs::forget_if_idle(std::int64_t id) {
   }
   forgotten = std::move(found->second);
   running_.erase(found);
+}
+
+std::optional<StoreError> CampaignJobs::stalled(std::int64_t id) {
+  const RunningPointer running = find(id);
+  if (!running) return std::nullopt;
+  const std::lock_guard lock(running->mutex);
+  return running->is_halted ? std::nullopt : running->stalled;
 }
 
 double CampaignJobs::unfinished_seconds(const std::string& principal) const {

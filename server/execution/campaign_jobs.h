@@ -47,6 +47,9 @@ class CampaignJobs {
   /// Returns the estimate of what is left of the campaigns of a principal that run [s of one
   /// processor].
   double unfinished_seconds(const std::string& principal) const;
+  /// Returns why the campaign cannot continue until the store can be read and written again;
+  /// nullopt if it can. Store::campaign_changes() counts changes of this too.
+  std::optional<StoreError> stalled(std::int64_t id);
   /// Queues a campaign that is RUNNING in the store, if it is not queued: a commit may succeed
   /// although its writer sees an error.
   void ensure_queued(const StoredCampaign& campaign);
@@ -103,6 +106,7 @@ class CampaignJobs {
   bool compute_slice(Running& running, Part& part, PreparedGearSets& gear_sets);
   void compute_unit(Running& running, Part& part, const std::shared_ptr<PreparedGearSet>& gear_set);
   void add_rows(Running& running, Part& part);
+  void set_stalled(Running& running, const std::optional<StoreError>& cause);
   int refusal_number(Running& running, const CampaignRow& row, Tile& tile);
   void write(Running& running, Part& part);
   void fail(std::int64_t id, const std::string& reason, const std::string& message);

@@ -132,6 +132,7 @@ void CampaignJobs::run_slice(const Lease& lease, PreparedGearSets& gear_sets,
     }
   } catch (const StoreError& error) {
     spdlog::error("{}: {}", running->name, error.what());
+    set_stalled(*running, error);
     goes_on = lease.stop->wait_for(kStorePause);
   }
   part.goes_on = nullptr;
@@ -145,6 +146,18 @@ void CampaignJobs::run_slice(const Lease& lease, PreparedGearSets& gear_sets,
   if (part.number == 0) end_care(*running);
   start_parts(*running);  // if it was resumed meanwhile, or needs no care any more
   forget_if_idle(running->id);
+}
+
+/// Sets why rows cannot be written; nullopt: they can. Tells those who watch if that changed.
+void CampaignJobs::set_stalled(Running& running, const std::optional<StoreError>& cause) {
+  {
+    const std::lock_guard lock(running.mutex);
+    const bool has_changed = running.stalled.has_value() != cause.has_value() ||
+                             (cause && running.stalled->kind() != cause->kind());
+    if (!has_changed) return;
+    running.stalled = cause;
+  }
+  store_.tell_campaign_change();
 }
 
 /// Computes for about Scheduler::kSliceSeconds. Returns true if there may be more to do. Throws
@@ -351,6 +364,7 @@ void CampaignJobs::write(Running& running, Part& part) {
     }
   }
   if (tile.done == 0 && tile.is_noted) store_.end_suspects(running.id);
+  if (tile.done > 0) set_stalled(running, std::nullopt);
   return_rows(running, tile);
   const bool was_written = tile.done > 0;
   part.tile.reset();

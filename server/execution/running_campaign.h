@@ -13,6 +13,7 @@
 
 #include "server/execution/campaign_jobs.h"
 #include "server/simulation/campaign_scene.h"
+#include "server/storage/store_error.h"
 
 namespace tribodyn::server {
 
@@ -80,6 +81,7 @@ struct CampaignJobs::Running {
   std::deque<RowRange> missing;                     // candidates that no part has taken
   std::deque<CampaignSuspect> suspects;             // the same that come first, one at a time
   bool is_careful = false;                          // part 0 alone computes
+  std::optional<StoreError> stalled;                // why its rows cannot be written
   std::size_t tiles_taken = 0;
   int tiles_written = 0;
   std::map<std::pair<std::string, std::string>, int> refusal_numbers;  // by reason and message

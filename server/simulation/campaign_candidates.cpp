@@ -321,6 +321,19 @@ void add_parameter_uncertainties(
   *out.add_candidate_attributes() = std::move(attribute);
 }
 
+/// Adds a violation for each attribute with a name that the server gives where candidates are
+/// lubricants.
+void check_not_made(const google::protobuf::RepeatedPtrField<v1::CandidateAttribute>& attributes,
+                    Violations& violations) {
+  for (int i = 0; i < attributes.size(); ++i) {
+    if (!is_made_attribute(attributes[i].name())) continue;
+    violations.add(fmt::format("candidate_attributes[{}].name", i),
+                   "\"{}\": the server makes this attribute where candidates "
+                   "are lubricants; choose another name",
+                   plain_excerpt(attributes[i].name()));
+  }
+}
+
 void make_lubricants(v1::Campaign& request, const ResourceLookup& lookup,
                      const LubricantSearch& search, Violations& violations) {
   if (!request.lubricant_filter().empty()) {
@@ -341,14 +354,7 @@ void make_lubricants(v1::Campaign& request, const ResourceLookup& lookup,
     *request.mutable_candidate_lubricants() = {names.begin(), names.end()};
   }
   if (request.lubricant().empty()) request.set_lubricant(request.candidate_lubricants(0));
-  for (int i = 0; i < request.candidate_attributes_size(); ++i) {
-    const std::string& name = request.candidate_attributes(i).name();
-    if (!is_made_attribute(name)) continue;
-    violations.add(fmt::format("candidate_attributes[{}].name", i),
-                   "\"{}\": the server makes this attribute where candidates "
-                   "are lubricants; choose another name",
-                   plain_excerpt(name));
-  }
+  check_not_made(request.candidate_attributes(), violations);
   const auto base = find_resource<v1::Lubricant>(lookup, request.lubricant(), kLubricants,
                                                  "lubricant", violations);
   if (!base) return;
@@ -375,6 +381,20 @@ bool has_lubricants(const v1::Campaign& requested, const v1::Campaign& table) {
 
 bool is_made_attribute(const std::string& name) {
   return name == "name" || name.ends_with(kUncertaintySuffix);
+}
+
+void replace_attributes(
+    const google::protobuf::RepeatedPtrField<v1::CandidateAttribute>& attributes,
+    v1::Campaign& table, Violations& violations) {
+  google::protobuf::RepeatedPtrField<v1::CandidateAttribute> made;
+  if (!table.candidate_lubricants().empty()) {
+    check_not_made(attributes, violations);
+    for (const v1::CandidateAttribute& each : table.candidate_attributes()) {
+      if (is_made_attribute(each.name())) *made.Add() = each;
+    }
+  }
+  *table.mutable_candidate_attributes() = attributes;
+  table.mutable_candidate_attributes()->MergeFrom(made);
 }
 
 void keep_first_candidates(int count, v1::Campaign& table) {

@@ -26,6 +26,12 @@ bool has_lubricants(const v1::Campaign& requested, const v1::Campaign& table);
 /// Returns true if the server makes the attribute where candidates are lubricants.
 bool is_made_attribute(const std::string& name);
 
+/// Replaces the attributes of a table of candidates, but for those that the server made. Adds a
+/// violation for each new one that has the name of such an attribute.
+void replace_attributes(
+    const google::protobuf::RepeatedPtrField<v1::CandidateAttribute>& attributes,
+    v1::Campaign& table, Violations& violations);
+
 /// Leaves the first candidates in a table of at least as many.
 void keep_first_candidates(int count, v1::Campaign& table);
 

@@ -71,11 +71,9 @@ std::set<std::string, std::less<>> taken_names(const v1::Campaign& requested) {
   return out;
 }
 
-void check_attributes(const v1::Campaign& requested, const v1::Campaign& table,
+void check_attributes(const v1::Campaign& requested, const v1::Campaign& table, int candidates,
                       Violations& violations) {
   auto taken = taken_names(requested);
-  const int candidates =
-      table.candidate_columns().empty() ? 1 : table.candidate_columns(0).values_size();
   for (int i = 0; i < table.candidate_attributes_size(); ++i) {
     const v1::CandidateAttribute& each = table.candidate_attributes(i);
     const std::string path = fmt::format("candidate_attributes[{}]", i);
@@ -348,7 +346,8 @@ std::optional<CampaignInputs> check_campaign(v1::Campaign request, const Resourc
   CampaignInputs out;
   out.table = take_table(request);
   out.requested = std::move(request);
-  check_attributes(out.requested, out.table, found);
+  const auto& columns = out.table.candidate_columns();
+  check_attributes(out.requested, out.table, columns.empty() ? 1 : columns[0].values_size(), found);
   check_weights(out.requested, found);
   check_rest(out.requested, out.table, found);
   v1::EvaluatePointsRequest points = points_request(out.requested, out.table);
@@ -458,6 +457,17 @@ CampaignInputs stored_campaign_inputs(const StoredCampaign& stored, const std::s
                   violations.front().field + ": " + violations.front().description);
   }
   return std::move(*inputs);
+}
+
+void check_descriptions(const v1::Campaign& requested, const v1::Campaign& table, int candidates,
+                        const std::string& path, Violations& violations) {
+  Violations found;
+  check_attributes(requested, table, candidates, found);
+  check_weights(requested, found);
+  check_rest(requested, table, found);
+  for (Violation& each : found) {
+    violations.add(join_path(path, each.field), std::move(each.description));
+  }
 }
 
 v1::CostEstimate estimate_cost(const CampaignInputs& inputs) {

@@ -54,6 +54,11 @@ std::optional<AppendedCandidates> read_appended(const StoredCampaign& stored,
 CampaignInputs stored_campaign_inputs(const StoredCampaign& stored, const std::string& table,
                                       const ResourceLookup& lookup);
 
+/// Checks weights of conditions and attributes of candidates, which decide no figure, of a campaign
+/// with so many candidates.
+void check_descriptions(const v1::Campaign& requested, const v1::Campaign& table, int candidates,
+                        const std::string& path, Violations& violations);
+
 /// Estimates what all points take: right within a factor of a few.
 v1::CostEstimate estimate_cost(const CampaignInputs& inputs);
 

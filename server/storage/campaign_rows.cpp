@@ -171,17 +171,24 @@ Page<StoredCampaign> query_campaigns(Connection& db, const CampaignQuery& wanted
   return out;
 }
 
-bool relabel_campaign(Connection& db, std::int64_t id, const std::string& before,
-                      const std::string& request, const CampaignLabels& labels) {
+bool describe_campaign(Connection& db, const StoredCampaign& present, const std::string& request,
+                       const CampaignLabels& labels,
+                       const std::optional<std::string>& candidate_table) {
   const int changed =
       execute(db,
-              "UPDATE campaigns SET request = ?1, stored_bytes = stored_bytes + ?4 "
-              "WHERE id = ?2 AND request = ?3",
-              Blob{request}, id, Blob{before},
-              static_cast<std::int64_t>(request.size()) - static_cast<std::int64_t>(before.size()));
+              "UPDATE campaigns SET stored_bytes = stored_bytes + length(?1) - length(request), "
+              "request = ?1 WHERE id = ?2 AND request = ?3 AND candidates = ?4",
+              Blob{request}, present.id, Blob{present.request}, present.candidates);
   if (changed == 0) return false;
-  execute(db, "DELETE FROM campaign_labels WHERE campaign = ?", id);
-  insert_campaign_labels(db, id, labels);
+  if (candidate_table) {
+    execute(db,
+            "UPDATE campaigns SET "
+            "stored_bytes = stored_bytes + length(?1) - length(candidate_table), "
+            "candidate_table = ?1 WHERE id = ?2",
+            Blob{*candidate_table}, present.id);
+  }
+  execute(db, "DELETE FROM campaign_labels WHERE campaign = ?", present.id);
+  insert_campaign_labels(db, present.id, labels);
   return true;
 }
 

@@ -33,10 +33,10 @@ struct CampaignQuery {
 /// Returns the campaigns that satisfy the query, the latest first, and the number of those over all
 /// pages.
 Page<StoredCampaign> query_campaigns(Connection& db, const CampaignQuery& query);
-/// Replaces the request of a campaign, and its labels. Returns false, and changes nothing, if the
-/// request is no longer `before`.
-bool relabel_campaign(Connection& db, std::int64_t id, const std::string& before,
-                      const std::string& request, const CampaignLabels& labels);
+/// As Store::describe_campaign(); returns false if it changes nothing.
+bool describe_campaign(Connection& db, const StoredCampaign& present, const std::string& request,
+                       const CampaignLabels& labels,
+                       const std::optional<std::string>& candidate_table);
 /// Adds candidates. A campaign that has SUCCEEDED is RUNNING again; `lost_attempts`: as in
 /// StoredCampaign, from then on.
 CandidatesAdded insert_candidates(Connection& db, const NewCandidates& added, Microseconds now,

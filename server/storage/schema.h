@@ -54,8 +54,8 @@ namespace tribodyn::server {
 ///   campaigns    one row per campaign; number counts within its project. state as in
 ///                Campaign.State, stop_reason and stop_message why it is paused or failed.
 ///                request: the Campaign as the client stated it, without its candidates, which are
-///                the Campaign candidate_table; the name and the labels may change, candidates may
-///                be added. points_done and the like change with each tile. lost_attempts:
+///                the Campaign candidate_table; the name, labels, weights and attributes may
+///                change, candidates may be added. points_done and the like change with each tile. lost_attempts:
 ///                processes that began to compute it and neither ended in good order nor wrote
 ///                tiles for long, where no suspect explains the loss. lost_candidates: those that
 ///                are refused because processes were lost while they computed them, since the

@@ -264,7 +264,7 @@ CREATE INDEX campaigns_by_vehicle ON campaigns (vehicle);
 CREATE TRIGGER campaigns_end_once BEFORE UPDATE OF state, stop_reason, stop_message, create_time,
   end_time, request_id, request_hash, input_hash, model_version, platform, client, principal,
   lubricant, gear_set, surface, vehicle, candidates, conditions, points_done, points_refused,
-  cost_seconds, processor_seconds, candidate_table ON campaigns
+  cost_seconds, processor_seconds ON campaigns
 WHEN OLD.state >= 3 AND NOT
   (OLD.state = 3 AND NEW.state = 1 AND NEW.candidates > OLD.candidates)
 BEGIN SELECT RAISE(ABORT, 'a campaign that has ended changes only by further candidates'); END;

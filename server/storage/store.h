@@ -218,12 +218,14 @@ class Store {
                                                     const std::string& request_id,
                                                     const CallLimits& limits = {});
   Page<StoredCampaign> campaigns(const CampaignQuery& query, const CallLimits& limits = {});
-  /// Replaces the request of a campaign, and its labels. Returns nullopt, and changes nothing, if
-  /// the request is no longer that of `present`.
-  std::optional<StoredCampaign> relabel_campaign(const StoredCampaign& present,
-                                                 const std::string& request,
-                                                 const CampaignLabels& labels,
-                                                 const CallLimits& limits = {});
+  /// Replaces the request of a campaign, its labels and, if stated, its table of candidates.
+  /// Returns nullopt, and changes nothing, if its request or its number of candidates is no longer
+  /// that of `present`.
+  std::optional<StoredCampaign> describe_campaign(const StoredCampaign& present,
+                                                  const std::string& request,
+                                                  const CampaignLabels& labels,
+                                                  const std::optional<std::string>& candidate_table,
+                                                  const CallLimits& limits = {});
   CandidatesAdded add_candidates(const NewCandidates& added, Microseconds now, int lost_attempts,
                                  const CallLimits& limits = {});
   std::optional<CandidatesAdded::Kind> append_of_request(std::int64_t id,
@@ -247,8 +249,10 @@ class Store {
   std::optional<CampaignProgress> campaign_progress(std::int64_t id, std::int64_t first_missing_row,
                                                     const CallLimits& limits = {});
   /// Returns a number that grows with each change of a campaign that this process made by one of
-  /// these functions.
+  /// these functions, and with each call of tell_campaign_change().
   std::uint64_t campaign_changes() const { return campaign_changes_; }
+  /// Tells observers that something has changed of a campaign that the store does not hold.
+  void tell_campaign_change();
   /// Notifies the observer of every later change of a campaign until it is destroyed.
   void observe_campaigns(const std::weak_ptr<Observer>& observer) {
     campaign_observers_.add(observer);
@@ -296,7 +300,6 @@ class Store {
   void run_write(const CallLimits& limits, const GroupCommit::Action& action);
   /// Runs an action in a transaction that it may share with others.
   void write_together(const CallLimits& limits, const GroupCommit::Action& action);
-  void tell_campaign_change();
   /// Runs an action on a connection of a reader, and returns what the action returns.
   template <class Action>
   auto read(const CallLimits& limits, const Action& action);

@@ -37,14 +37,13 @@ Page<StoredCampaign> Store::campaigns(const CampaignQuery& query, const CallLimi
   return read(limits, [&](Connection& db) { return query_campaigns(db, query); });
 }
 
-std::optional<StoredCampaign> Store::relabel_campaign(const StoredCampaign& present,
-                                                      const std::string& request,
-                                                      const CampaignLabels& labels,
-                                                      const CallLimits& limits) {
+std::optional<StoredCampaign> Store::describe_campaign(
+    const StoredCampaign& present, const std::string& request, const CampaignLabels& labels,
+    const std::optional<std::string>& candidate_table, const CallLimits& limits) {
   std::optional<StoredCampaign> out;
   write_together(limits, [&](Connection& db) {
     out.reset();
-    if (server::relabel_campaign(db, present.id, present.request, request, labels)) {
+    if (server::describe_campaign(db, present, request, labels, candidate_table)) {
       out = query_campaign(db, present.id);
     }
   });

@@ -20,7 +20,8 @@ class StoreError : public std::runtime_error {
     kMisplaced,  ///< its file was deleted, renamed or replaced while a server uses it
     kDeadline,   ///< the deadline of the caller passed (call_limits.h); nothing has changed
     kCancelled,  ///< the caller cancelled (call_limits.h); nothing has changed
-    kFailed,     ///< a statement failed: disk full, I/O error
+    kFull,       ///< the disk is full
+    kFailed,     ///< a statement failed: I/O error
   };
   StoreError(Kind kind, const std::string& sentence) : std::runtime_error(sentence), kind_(kind) {}
   Kind kind() const { return kind_; }

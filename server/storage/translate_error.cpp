@@ -19,6 +19,8 @@ StoreError translate_error(const SQLite::Exception& error, const std::filesystem
       return {StoreError::Kind::kInUse, name + " is locked by another program: " + error.what()};
     case SQLITE_CANTOPEN:
       return {StoreError::Kind::kCannotOpen, name + " cannot be opened: " + error.what()};
+    case SQLITE_FULL:
+      return {StoreError::Kind::kFull, name + ": " + error.what()};
     default:
       return {StoreError::Kind::kFailed, name + ": " + error.what()};
   }

@@ -310,6 +310,10 @@ campaign=$(campaign_of_output)
   cat >"$folder/points.jsonl"
 [ "$(wc -l <"$folder/points.jsonl")" -eq 800 ] || fail 'JSON lines are missing'
 [ "$(campaign_of_output)" = "$campaign" ] || fail 'the same screening has another campaign'
+sed 's/cost/cost_of_drum/' "$table" >"$folder/renamed.csv"
+expect 0 screen "$folder/renamed.csv" --like paper-fluid-1 --speeds 20,60 --weights 3,1 --pareto cost_of_drum
+[ "$(campaign_of_output)" = "$campaign" ] || fail 'what decides no figure made another campaign'
+expect 0 screen "$table" --like paper-fluid-1 --speeds 20,60
 (ulimit -f 20 && "$client" screen --campaign "$campaign" --csv "$folder/cut.csv") \
   >"$folder/out" 2>"$folder/err" && fail 'a run without room for its file succeeded'
 [ ! -e "$folder/cut.csv" ] || fail 'an incomplete file has its final name'

@@ -51,6 +51,16 @@ expect 0 lubricants get units --output json
 out_is_json
 out_has '"pressure_viscosity_coefficient_per_pascal": 2e-0?8' '"relaxation_time_seconds": 4.5e-0?7'
 
+echo "--- a guest over its quota is served slower"
+"$server" tokens create guest --database db.sqlite --calls-per-second 5 >guest.token 2>err
+chmod 600 guest.token
+pids=()
+for i in $(seq 40); do
+  TRIBODYN_TOKEN_FILE=guest.token "$client" lubricants get my-oil >"out.$i" 2>&1 &
+  pids+=($!)
+done
+for pid in "${pids[@]}"; do wait "$pid" || fail 'a command of a guest failed'; done
+
 echo "--- errors: all at once, with the nearest name"
 expect 2 lubricants create x --kv40 thick --kv100 8,86 --pressure-viscosity 20s --densty15 8
 err_has "'thick'" '8\.86$' "'20s'" '--density15'

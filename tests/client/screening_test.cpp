@@ -311,6 +311,16 @@ TEST(Screening, CandidatesThatEqualTheBaseAreCandidatesOfACampaign) {
   EXPECT_EQ(campaign.candidate_columns(0).values_size(), 3);
 }
 
+TEST(Screening, IsTheSameRequestWithAnotherTitleWeightsOrColumnsThatDecideNoFigure) {
+  Screening screening = sample_screening();
+  const std::string id = screening_request_id(campaign_of(screening, "a.csv"), "model");
+  screening.weights = {0.5, 0.5};
+  screening.table.cells[0][1] = "7";
+  v1::Campaign other = campaign_of(screening, "b.csv");
+  other.add_labels()->set_key("project");
+  EXPECT_EQ(screening_request_id(other, "model"), id);
+}
+
 TEST(Screening, IsAnotherRequestWithOtherCandidatesConditionsOrModel) {
   const Screening screening = sample_screening();
   const auto id = [](const Screening& each) {

@@ -20,6 +20,7 @@
 #include "server/storage/seeds.h"
 #include "server/storage/store.h"
 #include "tests/crash/faulty_vfs.h"
+#include "tests/service/campaign_fixture.h"
 #include "tests/service/support.h"
 #include "tests/support/run_length.h"
 #include "tribodyn/v1/results.pb.h"
@@ -429,6 +430,31 @@ TEST_F(StorageFault, AResultWaitsForADiskThatIsFull) {
   vfs_.recover();
   EXPECT_TRUE(bench.reaches(name, v1::Simulation::SUCCEEDED)) << "without a restart";
   EXPECT_TRUE(bench.reaches(bench.create(server::curve_simulation()), v1::Simulation::SUCCEEDED));
+}
+
+TEST_F(StorageFault, ACampaignSaysThatTheDiskIsFullAndContinuesWhenThereIsRoom) {
+  server::Bench bench(server::quick_studies(), 2);
+  server::Application app = bench.application();
+  v1::CreateCampaignRequest request;
+  *request.mutable_campaign() = server::campaign_of(3 * server::kThousand);
+  const auto created = server::create_campaign(app, request);
+  ASSERT_TRUE(created.ok());
+  vfs_.limit_space(0);
+  v1::GetCampaignRequest get;
+  get.set_name(created.message().name());
+  const auto now = [&] { return server::get_campaign(app, get).message(); };
+  ASSERT_TRUE(server::eventually([&] { return now().has_stalled(); }));
+  EXPECT_EQ(now().state(), v1::Campaign::RUNNING);
+  EXPECT_EQ(now().stalled().reason(), "STORE_FAILED");
+  v1::WatchCampaignRequest watch;
+  watch.set_name(get.name());
+  const auto source = server::watch_campaign(app, watch, {});
+  v1::CampaignEvent event;
+  ASSERT_EQ(source.message()->next(event), server::AnyMessageSource::Step::kMessage);
+  EXPECT_EQ(event.stalled().reason(), "STORE_FAILED");
+  vfs_.recover();
+  EXPECT_TRUE(server::eventually([&] { return now().state() == v1::Campaign::SUCCEEDED; }));
+  EXPECT_FALSE(now().has_stalled());
 }
 
 /// A disk on which each commit takes longer than the deadline of the call.

@@ -460,6 +460,39 @@ TEST_F(CampaignTest, StatesAllViolationsAtOnce) {
           HasSubstr("campaign.budget.processor_seconds: processor_seconds = -1")));
 }
 
+TEST_F(CampaignTest, WhatDecidesNoFigureIsChangedAfterItsEnd) {
+  const std::string name = create(campaign_of(4));
+  ASSERT_TRUE(reaches(name, v1::Campaign::SUCCEEDED));
+  const v1::Campaign before = get(name, v1::CAMPAIGN_VIEW_FULL);
+  v1::UpdateCampaignRequest request;
+  request.mutable_campaign()->set_name(name);
+  request.mutable_campaign()->add_condition_weights(1);
+  v1::CandidateAttribute& cost = *request.mutable_campaign()->add_candidate_attributes();
+  cost.set_name("cost_euros_per_litre");
+  for (int i = 0; i < 3; ++i) cost.add_values(i);
+  request.mutable_update_mask()->add_paths("condition_weights");
+  request.mutable_update_mask()->add_paths("candidate_attributes");
+  Application application = bench_.application();
+  const auto refused = update_campaign(application, request, CallContext());
+  ASSERT_FALSE(refused.ok());
+  EXPECT_THAT(complaints(refused.error()),
+              testing::AllOf(testing::HasSubstr("campaign.condition_weights"),
+                             testing::HasSubstr("campaign.candidate_attributes[0]")))
+      << "one weight of six, three values of four";
+  cost.add_values(3);
+  request.mutable_campaign()->clear_condition_weights();
+  ASSERT_TRUE(update_campaign(application, request, CallContext()).ok());
+  const v1::Campaign after = get(name, v1::CAMPAIGN_VIEW_FULL);
+  EXPECT_TRUE(after.condition_weights().empty());
+  ASSERT_EQ(after.candidate_attributes_size(), 1);
+  EXPECT_EQ(after.candidate_attributes(0).name(), "cost_euros_per_litre");
+  EXPECT_EQ(after.candidate_columns_size(), before.candidate_columns_size());
+  EXPECT_EQ(after.input_hash(), before.input_hash());
+  EXPECT_EQ(after.stored_bytes() - before.stored_bytes(),
+            static_cast<std::int64_t>(after.ByteSizeLong()) -
+                static_cast<std::int64_t>(before.ByteSizeLong()));
+}
+
 TEST_F(CampaignTest, ListsTheLatestFirstInPages) {
   for (int i = 0; i < 5; ++i) create(campaign_of(2));
   v1::ListCampaignsRequest request;

@@ -207,6 +207,20 @@ TEST_F(QuotaTest, SimulationsBeyondTheProcessorHoursAreRefusedWhileOthersWaitAnd
   *release_ = true;
 }
 
+TEST_F(QuotaTest, ARefusalNamesADelayOnlyIfWaitingHelps) {
+  const auto names_delay = [](const google::rpc::Status& status) {
+    return std::any_of(status.details().begin(), status.details().end(),
+                       [](const auto& each) { return each.template Is<google::rpc::RetryInfo>(); });
+  };
+  EXPECT_EQ(answer(create(long_simulation()), "usual").code(), google::rpc::OK);
+  const double hours = bench_.store().unfinished_seconds("default") / 3600;
+  app_.project_quotas = std::make_shared<ProjectQuotas>(Quota{.processor_hours = 1.5 * hours});
+  EXPECT_TRUE(names_delay(answer(create(long_simulation()), "usual")));
+  app_.project_quotas = std::make_shared<ProjectQuotas>(Quota{.processor_hours = 0.5 * hours});
+  EXPECT_FALSE(names_delay(answer(create(long_simulation()), "usual"))) << "it can never run";
+  *release_ = true;
+}
+
 TEST_F(QuotaTest, AProjectWithTooManyBytesOfResultsAcceptsNoSimulation) {
   *release_ = true;
   app_.project_bytes = 1;

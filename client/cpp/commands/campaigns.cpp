@@ -44,7 +44,7 @@ int run_each(const std::vector<std::string>& names, const CommonOptions& options
 /// Says of a campaign that had ended before that its state did not change.
 void report_ended(const v1::Campaign& before, const char* action) {
   if (!has_ended(before.state())) return;
-  std::cerr << printable(before.name()) << " had already ended (" << state_text(before.state())
+  std::cerr << printable(before.name()) << " had already ended (" << state_text(before)
             << "); nothing to " << action << ".\n";
 }
 

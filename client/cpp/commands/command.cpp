@@ -1,5 +1,6 @@
 #include "client/cpp/commands/command.h"
 
+#include <iostream>
 #include <stdexcept>
 #include <utility>
 
@@ -14,7 +15,11 @@ ProgressForm CommonOptions::progress_form() const {
 }
 
 Connection CommonOptions::connect(std::chrono::duration<double> timeout) const try {
-  return Connection(server_address(server), timeout, project, access_files(access));
+  Connection out(server_address(server), timeout, project, access_files(access));
+  out.report_waits([was_told = false](const std::string& why) mutable {
+    if (!std::exchange(was_told, true)) std::cerr << "tribodyn: waits: " << why << "\n";
+  });
+  return out;
 } catch (const std::invalid_argument& error) {
   throw Failure(kExitUsage, error.what());
 }

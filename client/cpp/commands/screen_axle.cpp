@@ -118,10 +118,8 @@ v1::Campaign made_campaign(ScreenFlags& flags, Connection& connection, Interrupt
   v1::Campaign request = campaign_without_candidates(
       screening, lubricants.empty() ? "design" : std::to_string(lubricants.size()) + " lubricants");
   set_made_candidates(flags, lubricants, request);
-  CreateCampaignOptions create;
-  create.request_id = screening_request_id(request, screening.base.model_version());
   interrupts.set(kCampaignMayExist);
-  return connection.create_campaign(request, create);
+  return create_or_find(connection, request, screening.base.model_version());
 }
 
 /// Returns the campaign that the command line describes, and writes its candidates and conditions
@@ -144,10 +142,8 @@ v1::Campaign campaign_to_follow(ScreenFlags& flags, const v1::Schema& schema,
                                            [](const std::string& each) { return each.empty(); });
   if (!is_any_accepted) return {};
   const v1::Campaign request = campaign_of(screening, table_title(flags.path));
-  CreateCampaignOptions create;
-  create.request_id = screening_request_id(request, screening.base.model_version());
   interrupts.set(kCampaignMayExist);
-  return connection.create_campaign(request, create);
+  return create_or_find(connection, request, screening.base.model_version());
 }
 
 /// Computes the points of a screening. Returns whether there are all of them.

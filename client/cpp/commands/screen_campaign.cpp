@@ -52,8 +52,8 @@ void go_on(const ScreenFlags& flags, const v1::Campaign& campaign, Connection& c
 
 void report_stop(const v1::Campaign& campaign, const Connection& connection) {
   const std::string program = program_of(connection), id = resource_id(campaign.name());
-  std::cerr << "tribodyn: " << campaign.name() << " is " << state_text(campaign.state())
-            << " after " << points_text(campaign);
+  std::cerr << "tribodyn: " << campaign.name() << " is " << state_text(campaign) << " after "
+            << points_text(campaign);
   if (campaign.has_stop()) std::cerr << ": " << printable(campaign.stop().message());
   std::cerr << "\n"
             << (campaign.state() == v1::Campaign::PAUSED

@@ -75,10 +75,8 @@ v1::Campaign computed_rig_campaign(const ScreenFlags& flags, Connection& connect
   if (name.empty()) {
     std::string model_version;
     const v1::Campaign request = rig_campaign_request(flags, connection, model_version);
-    CreateCampaignOptions create;
-    create.request_id = screening_request_id(request, model_version);
     interrupts.set(kCampaignMayExist);
-    name = connection.create_campaign(request, create).name();
+    name = create_or_find(connection, request, model_version).name();
   }
   interrupts.set(interrupted_campaign(connection, name));
   go_on(flags, connection.get_campaign(name), connection);

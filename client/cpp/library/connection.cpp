@@ -128,6 +128,11 @@ Connection::Connection(std::string address, std::chrono::duration<double> timeou
 }
 
 Connection::~Connection() = default;
+
+void Connection::report_waits(std::function<void(const std::string&)> report) {
+  services_->report_wait = std::move(report);
+}
+
 Connection::Connection(Connection&& other) noexcept = default;
 Connection& Connection::operator=(Connection&& other) noexcept = default;
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <stop_token>
 #include <string>
@@ -12,6 +13,7 @@
 #include "client/cpp/library/project_names.h"
 #include "client/cpp/library/retry.h"
 #include "client/cpp/library/status.h"
+#include "client/cpp/text/text.h"
 #include "proto/resource_kinds.h"
 #include "tribodyn/client/connection.h"
 #include "tribodyn/v1/campaigns.grpc.pb.h"
@@ -43,6 +45,7 @@ struct Connection::Services {
   std::string project;
   std::string token;  ///< empty: none
   std::shared_ptr<grpc::Channel> channel;
+  std::function<void(const std::string&)> report_wait;  ///< may be null
 #define TRIBODYN_STUB(Resource, field, collection, seed) \
   std::unique_ptr<v1::Resource##Service::Stub> field##s;
   TRIBODYN_RESOURCE_KINDS(TRIBODYN_STUB)
@@ -68,12 +71,13 @@ struct Connection::Services {
   Response call(Stub& stub,
                 grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
                 Request request) const {
-    using std::chrono::system_clock;
+    using std::chrono::milliseconds, std::chrono::system_clock;
     add_project(project, request);
     const auto limit = std::chrono::duration_cast<system_clock::duration>(timeout);
     auto deadline = system_clock::now() + limit;
     Backoff backoff;
-    bool was_connected = false;
+    bool was_connected = false, was_reported = false;
+    milliseconds waited{0};
     for (int tries = 1;; ++tries) {
       grpc::ClientContext context;
       context.set_deadline(deadline);
@@ -106,11 +110,17 @@ struct Connection::Services {
                  system_clock::now() + pause >= deadline) {
         throw service_error(status, address);
       }
+      waited += pause;
+      if (passes && !was_reported && waited >= kLongWait) {
+        was_reported = true;
+        if (report_wait) report_wait(printable(status.error_message()));
+      }
       std::this_thread::sleep_for(pause);
     }
   }
 
   static constexpr int kTries = 8;
+  static constexpr std::chrono::seconds kLongWait{2};
 };
 
 }  // namespace tribodyn::client

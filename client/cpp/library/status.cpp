@@ -62,6 +62,7 @@ ServiceError refusal(const grpc::Status& status) {
   const auto info = find_detail<google::rpc::ErrorInfo>(details);
   const auto bad_request = find_detail<google::rpc::BadRequest>(details);
   const auto retry = find_detail<google::rpc::RetryInfo>(details);
+  const auto resource = find_detail<google::rpc::ResourceInfo>(details);
 
   std::vector<FieldViolation> violations;
   if (bad_request) {
@@ -86,7 +87,9 @@ ServiceError refusal(const grpc::Status& status) {
         static_cast<double>(retry->retry_delay().seconds()) + 1e-9 * retry->retry_delay().nanos();
     text += "\n  try again in " + duration_text(*delay);
   }
-  return {text, static_cast<int>(status.error_code()), reason, violations, delay};
+  return {text,   static_cast<int>(status.error_code()),
+          reason, violations,
+          delay,  resource ? printable(resource->resource_name()) : ""};
 }
 
 /// Returns only the cause, e.g. "connection refused" for "failed to connect to all addresses; last

@@ -35,11 +35,10 @@ std::string campaigns_table(const std::vector<v1::Campaign>& campaigns) {
                {"Lubricant", "", Table::Align::kLeft},
                {"Title", "", Table::Align::kLeft}});
   for (const v1::Campaign& each : campaigns) {
-    table.add_row({resource_id(each.name()), state_text(each.state()),
-                   percent_text(done_share(each)), std::to_string(each.points()),
-                   std::to_string(each.points_refused()), day_and_time(each.create_time()),
-                   duration_text(each.processor_seconds()), resource_id(each.lubricant_revision()),
-                   each.display_name()});
+    table.add_row({resource_id(each.name()), state_text(each), percent_text(done_share(each)),
+                   std::to_string(each.points()), std::to_string(each.points_refused()),
+                   day_and_time(each.create_time()), duration_text(each.processor_seconds()),
+                   resource_id(each.lubricant_revision()), each.display_name()});
   }
   return table.text();
 }
@@ -64,7 +63,9 @@ std::string campaigns_csv(const std::vector<v1::Campaign>& campaigns) {
                     {"input_hash", each.input_hash()},
                     {"stored_bytes", std::to_string(each.stored_bytes())},
                     {"stop_reason", each.stop().reason()},
-                    {"stop_message", each.stop().message()}});
+                    {"stop_message", each.stop().message()},
+                    {"stalled_reason", each.stalled().reason()},
+                    {"stalled_message", each.stalled().message()}});
   }
   return csv_text(rows);
 }
@@ -82,9 +83,9 @@ std::string campaign_sheet(const v1::Campaign& campaign) {
   Sheet sheet;
   sheet.heading(campaign.name() + (campaign.display_name().empty() ? "" : ": ") +
                 campaign.display_name());
-  sheet.line("state", state_text(campaign.state()));
-  if (campaign.has_stop()) {
-    sheet.remark(campaign.stop().reason() + ": " + campaign.stop().message());
+  sheet.line("state", state_text(campaign));
+  if (const v1::CampaignStop why = reason_for_state(campaign); !why.reason().empty()) {
+    sheet.remark(why.reason() + ": " + why.message());
   }
   sheet.line("points computed", std::to_string(campaign.points_done()), "",
              "of " + std::to_string(campaign.points()) + ", " +
@@ -121,10 +122,14 @@ std::string campaign_sheet(const v1::Campaign& campaign) {
 
 }  // namespace
 
-std::string state_text(v1::Campaign::State state) {
-  switch (state) {
+v1::CampaignStop reason_for_state(const v1::Campaign& campaign) {
+  return campaign.has_stalled() ? campaign.stalled() : campaign.stop();
+}
+
+std::string state_text(const v1::Campaign& campaign) {
+  switch (campaign.state()) {
     case v1::Campaign::RUNNING:
-      return "running";
+      return campaign.has_stalled() ? "stalled" : "running";
     case v1::Campaign::PAUSED:
       return "paused";
     case v1::Campaign::SUCCEEDED:

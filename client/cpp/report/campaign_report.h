@@ -8,8 +8,11 @@
 
 namespace tribodyn::client {
 
-/// Returns "running", "paused", "succeeded", ...
-std::string state_text(v1::Campaign::State state);
+/// Returns "running", "paused", "succeeded", ...; "stalled" for one that runs without progress.
+std::string state_text(const v1::Campaign& campaign);
+
+/// Returns why a campaign is stalled, paused or failed; empty if it is none of these.
+v1::CampaignStop reason_for_state(const v1::Campaign& campaign);
 
 /// Returns e.g. "12000 of 39000 points".
 std::string points_text(const v1::Campaign& campaign);

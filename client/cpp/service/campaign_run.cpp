@@ -26,12 +26,13 @@ class CampaignProgress {
     const int computed = campaign.points_done() - *first_points_;
     JobProgress out;
     out.label = campaign.name();
-    out.state = state_text(campaign.state());
+    out.state = state_text(campaign);
     out.stage = points_text(campaign);
     if (computed > 0 && seconds > 0) out.stage += ", " + fixed(computed / seconds, 0) + "/s";
     out.fraction = static_cast<double>(campaign.points_done()) / std::max(campaign.points(), 1);
     out.ended = campaign.state() != v1::Campaign::RUNNING;
     if (out.ended) out.state += ", " + out.stage;
+    if (campaign.has_stalled()) out.stage = "stalled: " + printable(campaign.stalled().message());
     return out;
   }
 

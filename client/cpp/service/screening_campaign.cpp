@@ -1,5 +1,7 @@
 #include "client/cpp/service/screening_campaign.h"
 
+#include <google/protobuf/util/message_differencer.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -287,11 +289,42 @@ v1::AppendCandidatesRequest further_candidates(const Screening& screening,
   return out;
 }
 
-std::string screening_request_id(const v1::Campaign& campaign, const std::string& model_version) {
+std::string screening_request_id(v1::Campaign campaign, const std::string& model_version) {
+  campaign.clear_display_name();
+  campaign.clear_labels();
+  campaign.clear_condition_weights();
+  campaign.clear_candidate_attributes();
   Fnv hash;
   hash.add(campaign.SerializeAsString());
   hash.add(model_version);
   return "screen-" + hash.hex();
+}
+
+v1::Campaign create_or_find(Connection& connection, v1::Campaign campaign,
+                            const std::string& model_version) {
+  CreateCampaignOptions create;
+  create.request_id = screening_request_id(campaign, model_version);
+  try {
+    return connection.create_campaign(campaign, create);
+  } catch (const ServiceError& error) {
+    if (error.reason() != "REQUEST_ID_REUSED" || error.resource_name().empty()) throw;
+    campaign.set_name(error.resource_name());
+  }
+  const v1::Campaign present = connection.get_campaign(campaign.name(), v1::CAMPAIGN_VIEW_FULL);
+  std::vector<std::string> changed;
+  const auto& columns = campaign.candidate_columns();
+  const bool has_same_candidates =
+      !columns.empty() && columns[0].values_size() == present.candidates();
+  for (const std::string path :
+       {"display_name", "labels", "condition_weights", "candidate_attributes"}) {
+    if (path == "candidate_attributes" && !has_same_candidates) continue;
+    const auto* field = v1::Campaign::descriptor()->FindFieldByName(path);
+    google::protobuf::util::MessageDifferencer differencer;
+    if (!differencer.CompareWithFields(present, campaign, {field}, {field})) {
+      changed.emplace_back(path);
+    }
+  }
+  return changed.empty() ? present : connection.update_campaign(campaign, changed);
 }
 
 Screening screening_of(Connection& connection, const v1::Campaign& campaign) {

@@ -32,9 +32,15 @@ std::string attribute_text(const std::string& header);
 v1::AppendCandidatesRequest further_candidates(const Screening& screening,
                                                const v1::Campaign& campaign);
 
-/// Returns the id under which a campaign is created, e.g. "screen-3f1c...": a hash of the campaign
-/// and of the version of the model, so that the same screening finds the campaign that it made.
-std::string screening_request_id(const v1::Campaign& campaign, const std::string& model_version);
+/// Returns the id under which a campaign is created, e.g. "screen-3f1c...": a hash of all that
+/// decides its figures, so that the same screening finds the campaign that it made.
+std::string screening_request_id(v1::Campaign campaign, const std::string& model_version);
+
+/// Creates a campaign under that id; or finds the one with the same figures, and gives it the
+/// title, labels and weights of this one, and the attributes unless candidates were added to it
+/// since.
+v1::Campaign create_or_find(Connection& connection, v1::Campaign campaign,
+                            const std::string& model_version);
 
 /// Returns the screening of a campaign, without points: the opposite of campaign_of(). Candidates
 /// without names have their numbers, counted from 1. Evaluates the base.

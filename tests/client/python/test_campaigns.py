@@ -142,6 +142,64 @@ def test_the_same_call_again_finds_its_campaign(client):
     assert caught.value.reason == "NOT_FOUND"
 
 
+def test_what_decides_no_figure_makes_no_new_campaign(client):
+    table = {"name": ["a", "b"], "cost": [2.0, 3.0], "lubricant.relaxation_time": ["91 ns", "92 ns"]}
+    first = client.screen(table, FLUID, speeds_kilometres_per_hour=[40, 60], labels={"a": "1"})
+    first.wait()
+    other = {**table, "name": ["c", "d"], "cost": [5.0, 4.0], "additive": ["x", "y"]}
+    again = client.screen(
+        other,
+        FLUID,
+        speeds_kilometres_per_hour=[40, 60],
+        speed_weights=[3, 1],
+        display_name="again",
+        labels={"b": "2"},
+    )
+    assert again.name == first.name and again.message.points_done == first.message.points
+    assert again.message.display_name == "again" and again.message.labels[0].key == "b"
+    assert list(again.message.condition_weights) == [3, 1]
+    ranking = again.ranking()
+    assert sorted(ranking["name"]) == ["c", "d"] and set(ranking["additive"]) == {"x", "y"}
+    changed = {**table, "lubricant.relaxation_time": ["91 ns", "93 ns"]}
+    assert client.screen(changed, FLUID, speeds_kilometres_per_hour=[40, 60]).name != first.name
+
+
+def test_columns_that_look_like_inputs_are_refused_unless_they_are_carried(client):
+    def refused(call, column, **more):
+        with pytest.raises(tribodyn.TribodynError) as caught:
+            call({**more, column: [60, 200]})
+        return caught.value.reason == "INVALID_FIELDS" and caught.value.violations[0].field == column
+
+    def screen(table, **more):
+        return client.screen(table, FLUID, **more)
+
+    def evaluate(table, **more):
+        return client.evaluate(table, lubricant=FLUID, speed_kilometres_per_hour=50, **more)
+
+    def points(table, **more):
+        return client.points(table, lubricant=FLUID, speed_kilometres_per_hour=50, **more)
+
+    for column in (
+        "kv40",
+        "KV 100 (mm2/s)",
+        "pressure_viscosity_coefficient",
+        "pressure-viscosity (1/GPa)",
+        "relaxation_tmie_seconds",
+        "gear_sets",
+    ):
+        for call in (screen, evaluate, points):
+            assert refused(call, column), column
+    assert refused(evaluate, "sump_temperature") and refused(points, "sump_temperature")
+    assert refused(screen, "sump_temperature_celsius") and refused(screen, "lubricant")
+    assert refused(points, "lubricant.relaxation_time_seconds")
+    for call in (screen, evaluate, points):
+        call({"name": ["a", "b"], "additive": ["x", "y"], "treat rate": [1, 2], "cost": [3, 4]})
+    carried = evaluate({"kv40": [60, 200]}, carry="kv40")
+    assert list(carried["kv40"]) == [60, 200] and set(carried["status"]) == {"OK"}
+    with pytest.raises(tribodyn.TribodynError):
+        evaluate({"additive": ["x", "y"]}, carry=["kv40"])
+
+
 def test_what_is_wrong_with_a_screening_is_reported_together(client):
     with pytest.raises(tribodyn.TribodynError) as caught:
         client.screen(

@@ -347,11 +347,11 @@ def guest_of(server, name, calls_per_second):
 
 def test_a_guest_with_a_small_quota_of_calls_is_served_slower_and_whole(server):
     async def run():
-        async with guest_of(server, "guest", 20) as client:
+        async with guest_of(server, "guest", 5) as client:
             point = {"lubricant": FLUID, "speed_kilometres_per_hour": 55}
             table = {"sump_temperature_celsius": np.linspace(30, 90, 60)}
             evaluated = await asyncio.gather(
-                *(client.evaluate({"sump_temperature_celsius": [40 + i]}, **point) for i in range(150))
+                *(client.evaluate({"sump_temperature_celsius": [40 + i]}, **point) for i in range(50))
             )
             return await client.points(table, **point), evaluated
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import warnings
 from typing import Any, AsyncGenerator, Mapping, Sequence
 
 import numpy as np
@@ -49,7 +50,8 @@ class AsyncCampaign(Decisions):
 
     async def wait(self) -> None:
         """Waits until the campaign has ended or is paused, with a progress bar; also over a restart
-        of the server. Raises TribodynError if it failed or was cancelled."""
+        of the server. Warns when it stalls (see ``state``), and waits on. Raises TribodynError if it
+        failed or was cancelled."""
         progress = Progress(self._progress_form, max(self.message.points, 1), self.name)
         try:
             async for message in self._looks():
@@ -225,6 +227,7 @@ class AsyncCampaign(Decisions):
         """Yields the campaign again and again until it is not RUNNING. Waits for a server that is
         lost, for a limited time. Raises if the campaign failed or was cancelled."""
         pause, tries_left, backoff = _FIRST_LOOK, _FOLLOW_RETRIES, Backoff()
+        was_stalled = False
         while True:
             try:
                 message = await self.refresh()
@@ -236,6 +239,9 @@ class AsyncCampaign(Decisions):
                 continue
             tries_left = _FOLLOW_RETRIES
             backoff.reset()
+            if message.stalled.message and not was_stalled:
+                warnings.warn(f"{self.name} is stalled: {self.reason}", RuntimeWarning, stacklevel=2)
+            was_stalled = message.HasField("stalled")
             yield message
             if message.state != pb.Campaign.RUNNING:
                 break

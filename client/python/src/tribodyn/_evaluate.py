@@ -23,6 +23,7 @@ from tribodyn.v1 import points_pb2, results_pb2
 
 _BASE = ("lubricant", "gear_set", "surface", "vehicle", "tolerance")
 CONDITION = tuple(each.name for each in points_pb2.PointCondition.DESCRIPTOR.fields)
+INPUTS = (*_BASE, *CONDITION)
 
 # The server takes 2000. Smaller requests share its threads, and end within its time limit.
 _MOST_POINTS = 500
@@ -43,6 +44,7 @@ class Evaluations(Session):
         contact_figures: bool = False,
         elasticities: Sequence[str] = (),
         elasticity_figures: Sequence[str] = (),
+        carry: str | Sequence[str] = (),
         **parameters: Any,
     ) -> Frame:
         """Returns the main figures of many variants at many conditions, without jobs: rows in, rows
@@ -52,8 +54,9 @@ class Evaluations(Session):
         speed_kilometres_per_hour, ascent_angle_degrees, sump_temperature_celsius and
         inlet_temperature_rise_kelvin. A column "lubricant.FIELD" or "surface.FIELD" states what a
         row has in place of the parameter of its lubricant or surface, with units as of create():
-        "lubricant.relaxation_time_seconds", "surface.asperity_friction_coefficient". The server
-        keeps nothing. A figure agrees with that of a point within the estimated errors of both.
+        "lubricant.relaxation_time_seconds", "surface.asperity_friction_coefficient". Other columns
+        ride along; one whose name is similar to that of an input or a measurement ("kv40",
+        "sump_temperature") is refused unless ``carry`` names it. The server keeps nothing. A figure agrees with that of a point within the estimated errors of both.
         ``model_options`` as of Options; ``status`` as of points(); ``verdict_withheld``: a warning
         says that the row decides nothing between lubricants. ``attrs`` holds model_version, the
         revisions used, ``warnings`` as of point() and ``not_included``: what the figures leave out.
@@ -70,7 +73,7 @@ class Evaluations(Session):
         parameter, temperatures from 0 K, exact to rounding; NaN at a fold. A point then takes four
         to seven times as long.
         """
-        given, rows = rows_with(table, parameters, _is_known)
+        given, rows = rows_with(table, parameters, INPUTS, _is_known, carry)
         evaluation = _Evaluation(
             self._transport, model_options or {}, contact_figures, elasticities, elasticity_figures
         )
@@ -79,7 +82,7 @@ class Evaluations(Session):
 
 
 def _is_known(name: str) -> bool:
-    return name in _BASE or name in CONDITION or is_parameter(name)
+    return name in INPUTS or is_parameter(name)
 
 
 @dataclass

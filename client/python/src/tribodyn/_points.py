@@ -36,6 +36,8 @@ _PARAMETERS = (
     "model",
 )
 
+_INPUTS = ("lubricant", *_PARAMETERS)
+
 RunAll = Callable[[Sequence[pb.CreateSimulationRequest]], Awaitable[Sequence[Outcome]]]
 
 
@@ -43,20 +45,26 @@ class Points(Session):
     """The method of a client for tables of points."""
 
     async def points(
-        self, /, table: Any, *, options: Options = Options(), **parameters: Any
+        self,
+        /,
+        table: Any,
+        *,
+        options: Options = Options(),
+        carry: str | Sequence[str] = (),
+        **parameters: Any,
     ) -> Frame:
         """Returns the whole record of many operating points: rows in, rows out, in their order.
 
         ``table`` is a DataFrame, a mapping of columns, a sequence of rows, or the path of a CSV
         file. Its columns are the arguments of point(): lubricant, gear_set, surface, vehicle,
         sump_temperature_celsius, speed_kilometres_per_hour and so on; ``parameters`` hold for the
-        rows that state none. Other columns ride along. The points are jobs, with the bits of
+        rows that state none. Other columns ride along, and ``carry`` as of evaluate(). The points are jobs, with the bits of
         point(), solved in parallel. A row that fails has NaN, the reason in ``status`` and a
         sentence in ``status_message``; the others have "OK". ``attrs["warnings"]`` and
         ``attrs["input_warnings"]`` hold the warnings as of point(), each with the rows that it holds
         for. ``options.request_id`` is not used: equal inputs are computed once anyway.
         """
-        given, rows = rows_with(table, parameters, lambda name: name in ("lubricant", *_PARAMETERS))
+        given, rows = rows_with(table, parameters, _INPUTS, _INPUTS.__contains__, carry)
 
         async def run(jobs: Sequence[pb.CreateSimulationRequest]) -> Sequence[Outcome]:
             return await self._run_jobs(jobs, "points")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import functools
 import re
 from dataclasses import dataclass
 from typing import Any, Callable, Mapping
@@ -74,6 +75,10 @@ class Column:
 def find_column(kind: type[Message], header: str) -> Column | None:
     """Returns the column of a header: a field, a name of data sheets ("kv40", "Density15 (g/cm3)"),
     "labels.KEY", "FIELD.provenance" and so on, or "Brookfield -40 C"; None if there is none."""
+    return _found(kind, header)
+
+
+def _find(kind: type[Message], header: str) -> Column | None:
     if header.startswith("labels.") and len(header) > len("labels."):
         return Column("label", key=header.removeprefix("labels."))
     word, unit = _split_header(header)
@@ -106,11 +111,25 @@ def find_column(kind: type[Message], header: str) -> Column | None:
     return None
 
 
+# Each cell of a table asks for its header.
+_found: Any = functools.lru_cache(maxsize=10_000)(_find)
+
+
+def word_of(header: str) -> str:
+    """Returns a header in the spelling of fields, without its unit: "sump_temperature"."""
+    return _split_header(header)[0]
+
+
+def field_names(kind: type[Message]) -> list[str]:
+    """Returns the names of the fields of a resource, and of its measurements on data sheets."""
+    return [each.name for each in kind.DESCRIPTOR.fields] + list(_TRADE_NAMES)
+
+
 def unknown(kind: type[Message], header: str) -> str:
     """Returns what is wrong with a header that names no field."""
-    words = [each.name for each in kind.DESCRIPTOR.fields] + list(_TRADE_NAMES)
+    words = field_names(kind)
     words += [without_unit(each) for each in words]
-    meant = difflib.get_close_matches(_split_header(header)[0], words, 1)
+    meant = difflib.get_close_matches(word_of(header), words, 1)
     return "is unknown" + (f" (is {meant[0]} meant?)" if meant else "")
 
 

@@ -9,9 +9,11 @@ from tribodyn._arguments import Arguments, full_name, set_switches
 from tribodyn._campaigns import AsyncCampaign
 from tribodyn._candidate_columns import add_attributes, add_candidates
 from tribodyn._candidates import Design, Lubricants, Rig
+from tribodyn._carried import check_carried
 from tribodyn._csv import table_rows
 from tribodyn._figures import FigureChoice
-from tribodyn._parameters import read_parameters
+from tribodyn._evaluate import INPUTS
+from tribodyn._parameters import is_parameter, read_parameters
 from tribodyn._session import Session
 from tribodyn._stored_campaign import SERVICE
 from tribodyn._transport import Transport
@@ -26,6 +28,9 @@ _COLLECTIONS = {
     "surface": "surfaces",
     "vehicle": "vehicles",
 }
+_EVERY_LUBRICANT_HAS = "lubricant.thermal_conductivity_watts_per_metre_kelvin"
+# Fields of a campaign that decide no figure.
+_DESCRIPTIONS = ("display_name", "labels", "condition_weights", "candidate_attributes")
 
 
 class Screening(Session):
@@ -56,6 +61,7 @@ class Screening(Session):
         display_name: str = "",
         labels: Mapping[str, str] | None = None,
         request_id: str | None = None,
+        carry: str | Sequence[str] = (),
     ) -> AsyncCampaign:
         """Screens candidates, one a row, at every speed and sump temperature (None: 60 km/h and
         40 C), and returns the campaign at once. The server computes and keeps it: up to 100,000
@@ -63,8 +69,8 @@ class Screening(Session):
 
         ``table`` is as of points(). A column "lubricant.FIELD" or "surface.FIELD" states what
         candidates have in place of the parameter of ``lubricant`` or ``surface``, as of evaluate();
-        an empty cell leaves that. Other columns ride along, "name" among them; characters of their
-        names beyond letters, digits, "-", "_" and "." become "_". Oils that are known by their data
+        an empty cell leaves that. Other columns ride along, "name" among them, and ``carry`` as of
+        evaluate(); characters of their names beyond letters, digits, "-", "_" and "." become "_". Oils that are known by their data
         sheets are Lubricants: a table cannot carry the uncertainty of what is estimated. Weights, one
         for each speed and sump temperature and above 0, are those of ranking(); None: equal.
         ``contact_figures`` and ``elasticities`` as of evaluate(), ``model_options`` as of Options.
@@ -80,7 +86,7 @@ class Screening(Session):
 
         The same call again finds its campaign by a request id that is a hash of all that decides its
         figures, goes on if it is paused, and computes nothing twice; ``request_id`` states another
-        one. A budget pauses the campaign when it is spent. Raises if a parameter or condition is
+        one. Title, labels, weights and other columns decide no figure: the campaign gets new ones. A budget pauses the campaign when it is spent. Raises if a parameter or condition is
         outside its range, with all of them.
         """
         arguments = Arguments()
@@ -114,6 +120,9 @@ class Screening(Session):
             )
         is_made = isinstance(table, (Design, Lubricants))
         rows = [] if is_made else table_rows(table)
+        headers = dict.fromkeys(name for row in rows for name in row)
+        parameters = [name for name in headers if is_parameter(name)]
+        check_carried(headers, parameters, INPUTS, carry)
         if is_made:
             table.set(arguments, campaign)
         candidates = [read_parameters(arguments, row) for row in rows]
@@ -129,19 +138,49 @@ class Screening(Session):
             "vehicle": vehicle,
         }
         model_version = await _pin(self._transport, campaign, base)
-        await add_candidates(self._transport, campaign, candidates)
+        # Without a column a campaign has one candidate: those that state nothing share a parameter.
+        paths = [_EVERY_LUBRICANT_HAS] if rows and not any(candidates) else []
+        await add_candidates(self._transport, campaign, candidates, paths)
         add_attributes(campaign, rows)
         for key, value in (labels or {}).items():
             campaign.labels.add(key=key, value=value)
-        if request_id is None:
-            inputs = campaign.SerializeToString(deterministic=True) + model_version.encode()
-            inputs += "".join(found).encode()
-            request_id = "screen-" + hashlib.sha256(inputs).hexdigest()[:32]
-        request = pb.CreateCampaignRequest(campaign=campaign, request_id=request_id)
-        created = await self._call(SERVICE, "CreateCampaign", request, patient=True)
+        created = await self._create_or_find(campaign, request_id, [model_version, *found])
         out = AsyncCampaign(self._transport, self._settings.progress, created)
         await _go_on(out, budget_points, budget_processor_seconds)
         return out
+
+    async def _create_or_find(
+        self, campaign: pb.Campaign, request_id: str | None, beside: Sequence[str]
+    ) -> pb.Campaign:
+        """Creates a campaign; or finds the one with the same figures (which ``beside`` decides too),
+        and gives it the title, labels and weights of this one, and the attributes unless candidates
+        were added to it since."""
+        request = pb.CreateCampaignRequest(
+            campaign=campaign, request_id=request_id or _request_id(campaign, beside)
+        )
+        try:
+            return await self._call(SERVICE, "CreateCampaign", request, patient=True)
+        except TribodynError as error:
+            if request_id or error.reason != "REQUEST_ID_REUSED" or not error.resource:
+                raise
+            name = error.resource
+        get = pb.GetCampaignRequest(name=name, view=pb.CAMPAIGN_VIEW_FULL)
+        present = await self._call(SERVICE, "GetCampaign", get)
+        update = pb.UpdateCampaignRequest(campaign=pb.Campaign(name=name))
+        for path in _DESCRIPTIONS:
+            stated = getattr(campaign, path)
+            if path == "candidate_attributes" and not _has_same_candidates(campaign, present):
+                continue
+            if stated == getattr(present, path):
+                continue
+            update.update_mask.paths.append(path)
+            if isinstance(stated, str):
+                setattr(update.campaign, path, stated)
+            else:
+                getattr(update.campaign, path).extend(stated)
+        if not update.update_mask.paths:
+            return present
+        return await self._call(SERVICE, "UpdateCampaign", update, patient=True)
 
     async def campaign(self, name: str) -> AsyncCampaign:
         """Returns a campaign, e.g. "12" or "campaigns/12"."""
@@ -170,6 +209,21 @@ class Screening(Session):
         return [
             AsyncCampaign(self._transport, self._settings.progress, each) for each in found[:limit]
         ]
+
+
+def _request_id(campaign: pb.Campaign, beside: Sequence[str]) -> str:
+    """Returns a hash of all that decides the figures of a campaign."""
+    inputs = pb.Campaign()
+    inputs.CopyFrom(campaign)
+    for path in _DESCRIPTIONS:
+        inputs.ClearField(path)
+    text = inputs.SerializeToString(deterministic=True) + "".join(beside).encode()
+    return "screen-" + hashlib.sha256(text).hexdigest()[:32]
+
+
+def _has_same_candidates(campaign: pb.Campaign, present: pb.Campaign) -> bool:
+    columns = campaign.candidate_columns
+    return bool(columns) and len(columns[0].values) == present.candidates
 
 
 async def _go_on(

@@ -30,9 +30,22 @@ class StoredCampaign:
 
     @property
     def state(self) -> str:
-        """The state when the server last answered: "running", "paused", "succeeded", "failed" or
-        "cancelled"."""
+        """The state when the server last answered: "running", "paused", "succeeded", "failed",
+        "cancelled", or "stalled": it runs, but the server cannot write its rows."""
+        if self.message.HasField("stalled"):
+            return "stalled"
         return pb.Campaign.State.Name(self.message.state).lower()
+
+    @property
+    def reason(self) -> str:
+        """Why it is stalled, paused or failed, for people; "" if it is none of these."""
+        return self.message.stalled.message or self.message.stop.message
+
+    def __repr__(self) -> str:
+        return (
+            f"<{self.name}: {self.state}, {self.message.points_done} of {self.message.points} points"
+            f"{': ' * bool(self.reason)}{self.reason}>"
+        )
 
     async def refresh(self) -> pb.Campaign:
         """Fetches the present message from the server and returns it."""

@@ -4,6 +4,7 @@ project."""
 from __future__ import annotations
 
 import asyncio
+import logging
 import random
 import uuid
 from contextlib import AsyncExitStack
@@ -30,6 +31,8 @@ _OPTIONS = (
 _AMID_WORK = ("STORE_FAILED", "OUT_OF_MEMORY")
 # Calls over a quota that try again at once; the others wait in line, or all would fail together.
 _MOST_OVER_QUOTA = 8
+_LONG_WAIT = 5.0  # for a quota, after which the log says so [s]
+_LOG = logging.getLogger("tribodyn")
 _REPEATABLE = ("Get", "List", "Evaluate", "Pause", "Resume", "Cancel", "Delete")
 
 
@@ -82,7 +85,8 @@ class Transport:
         deadline = loop.time() + self.settings.timeout_seconds
         backoff = Backoff()
         function = self._function(service, method, request)
-        waited_for_connection = is_in_line = False
+        waited_for_connection = is_in_line = was_reported = False
+        waited = 0.0
         async with AsyncExitStack() as line:
             while True:
                 try:
@@ -110,7 +114,8 @@ class Transport:
                     turned_away = requested is not None and reason not in _AMID_WORK
                     is_over_quota = (
                         reason == "QUOTA_EXCEEDED"
-                        and (requested or 0.0) <= self.settings.timeout_seconds
+                        and requested is not None
+                        and requested <= self.settings.timeout_seconds
                     )
                     if is_over_quota and not is_in_line:
                         await line.enter_async_context(self._line)
@@ -122,6 +127,10 @@ class Transport:
                         deadline = loop.time() + pause + self.settings.timeout_seconds
                     elif not (is_gone or turned_away) or loop.time() + pause >= deadline:
                         raise service_error(error, self.settings.server) from None
+                    waited += pause
+                    if is_over_quota and not was_reported and waited >= _LONG_WAIT:
+                        was_reported = True
+                        _LOG.warning("waits: %s", error.details())
                     await asyncio.sleep(pause)
 
     async def stream(

@@ -44,6 +44,7 @@ class TribodynError(Exception):
         code: str = "",
         violations: Sequence[Violation] = (),
         retry_delay_seconds: float | None = None,
+        resource: str = "",
     ) -> None:
         self.message = message  #: without the violations
         self.reason = reason
@@ -51,6 +52,7 @@ class TribodynError(Exception):
         self.violations = tuple(violations)  #: all of them
         #: pause before a retry that the server requests, in seconds; None if it requests none
         self.retry_delay_seconds = retry_delay_seconds
+        self.resource = resource  #: the name of the resource that the error is about; or ""
         text = message + (f" [{reason or code}]" if reason or code else "")
         for each in self.violations:
             text += "\n  " + _violation_text(each)
@@ -68,7 +70,10 @@ def violation(field: str, description: str) -> Violation:
 
 
 def invalid_fields(
-    violations: Sequence[Violation], code: str = "", reason: str = "INVALID_FIELDS"
+    violations: Sequence[Violation],
+    code: str = "",
+    reason: str = "INVALID_FIELDS",
+    resource: str = "",
 ) -> TribodynError:
     """Returns the error of a request with these violations."""
     count = len(violations)
@@ -77,6 +82,7 @@ def invalid_fields(
         reason=reason,
         code=code,
         violations=violations,
+        resource=resource,
     )
 
 
@@ -112,13 +118,16 @@ def service_error(error: grpc.aio.AioRpcError, address: str) -> TribodynError:
     reason, violations = reason_of(status), []
     for detail in _all(status, error_details_pb2.BadRequest):
         violations += [violation(each.field, each.description) for each in detail.field_violations]
+    names = [each.resource_name for each in _all(status, error_details_pb2.ResourceInfo)]
+    resource = names[0] if names else ""
     if violations:
-        return invalid_fields(violations, code, reason)
+        return invalid_fields(violations, code, reason, resource)
     return TribodynError(
         error.details() or "the server sent no message",
         reason=reason,
         code=code,
         retry_delay_seconds=retry_delay_of(status),
+        resource=resource,
     )
 
 

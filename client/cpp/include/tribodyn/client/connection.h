@@ -178,6 +178,9 @@ class Connection {
 
   const std::string& address() const;
   const std::string& project() const;
+  /// Has `report` called, on the thread of the call, with the server's sentence once a call has
+  /// waited for some seconds because a quota is spent.
+  void report_waits(std::function<void(const std::string&)> report);
 
   /// Creates a resource under `id` (empty: the id in its name) and returns it as stored: with
   /// fitted and estimated parameters and the provenance of each.

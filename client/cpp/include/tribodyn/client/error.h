@@ -29,13 +29,15 @@ class ServiceError : public std::runtime_error {
   ServiceError(Kind kind, const std::string& text) : std::runtime_error(text), kind_(kind) {}
   /// Constructs an error of kind kRefused.
   ServiceError(const std::string& text, int status_code, std::string reason,
-               std::vector<FieldViolation> violations, std::optional<double> retry_delay_seconds)
+               std::vector<FieldViolation> violations, std::optional<double> retry_delay_seconds,
+               std::string resource_name = "")
       : std::runtime_error(text),
         kind_(Kind::kRefused),
         status_code_(status_code),
         reason_(std::move(reason)),
         violations_(std::move(violations)),
-        retry_delay_seconds_(retry_delay_seconds) {}
+        retry_delay_seconds_(retry_delay_seconds),
+        resource_name_(std::move(resource_name)) {}
 
   Kind kind() const { return kind_; }
   /// The number of a grpc::StatusCode, e.g. 5 for NOT_FOUND; 0 unless kind() is kRefused.
@@ -46,6 +48,8 @@ class ServiceError : public std::runtime_error {
   const std::vector<FieldViolation>& violations() const { return violations_; }
   /// The pause before a retry that the server requests; nullopt if it requests none.
   std::optional<double> retry_delay_seconds() const { return retry_delay_seconds_; }
+  /// The resource that the error is about, e.g. the one that a request_id has made; may be empty.
+  const std::string& resource_name() const { return resource_name_; }
 
  private:
   Kind kind_;
@@ -53,6 +57,7 @@ class ServiceError : public std::runtime_error {
   std::string reason_;
   std::vector<FieldViolation> violations_;
   std::optional<double> retry_delay_seconds_;
+  std::string resource_name_;
 };
 
 }  // namespace tribodyn::client
