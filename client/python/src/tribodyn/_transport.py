@@ -31,7 +31,8 @@ _OPTIONS = (
 _AMID_WORK = ("STORE_FAILED", "OUT_OF_MEMORY")
 # Calls over a quota that try again at once; the others wait in line, or all would fail together.
 _MOST_OVER_QUOTA = 8
-_LONG_WAIT = 5.0  # for a quota, after which the log says so [s]
+# Time that a call waits for a quota until the log says so, and until it may say so again [s].
+_LONG_WAIT, _BETWEEN_REPORTS = 5.0, 60.0
 _LOG = logging.getLogger("tribodyn")
 _REPEATABLE = ("Get", "List", "Evaluate", "Pause", "Resume", "Cancel", "Delete")
 
@@ -67,6 +68,7 @@ class Transport:
             self._metadata += (("authorization", f"Bearer {settings.token}"),)
         self._channel: grpc.aio.Channel | None = None
         self._was_connected = False
+        self._next_report = 0.0  # time of the loop
         self._line = asyncio.Semaphore(_MOST_OVER_QUOTA)
 
     async def close(self) -> None:
@@ -85,7 +87,7 @@ class Transport:
         deadline = loop.time() + self.settings.timeout_seconds
         backoff = Backoff()
         function = self._function(service, method, request)
-        waited_for_connection = is_in_line = was_reported = False
+        waited_for_connection = is_in_line = False
         waited = 0.0
         async with AsyncExitStack() as line:
             while True:
@@ -128,8 +130,8 @@ class Transport:
                     elif not (is_gone or turned_away) or loop.time() + pause >= deadline:
                         raise service_error(error, self.settings.server) from None
                     waited += pause
-                    if is_over_quota and not was_reported and waited >= _LONG_WAIT:
-                        was_reported = True
+                    if is_over_quota and waited >= _LONG_WAIT and loop.time() >= self._next_report:
+                        self._next_report = loop.time() + _BETWEEN_REPORTS
                         _LOG.warning("waits: %s", error.details())
                     await asyncio.sleep(pause)
 
