@@ -19,6 +19,9 @@
 namespace tribodyn::server {
 namespace {
 
+/// Fewer descriptors leave none for connections beside the files that the server itself opens.
+constexpr rlim_t kLeastFiles = 100;
+
 /// Runs a command. Returns its exit code.
 int run_command(const Settings& settings) {
   if (settings.command == "backup") {
@@ -48,12 +51,13 @@ sigset_t block_signals() {
   return signals;
 }
 
-/// Raises the limit of open files, as every connection is one.
-void raise_file_limit() {
+/// Raises the limit of open files, as every connection is one. Returns the limit.
+rlim_t raise_file_limit() {
   rlimit limit{};
-  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return kLeastFiles;
   limit.rlim_cur = limit.rlim_max;
   setrlimit(RLIMIT_NOFILE, &limit);
+  return limit.rlim_cur;
 }
 
 int complain(int code, const char* sentence) {
@@ -70,13 +74,19 @@ int run(const std::vector<std::string>& arguments) {
   // the server grow by 6 to 10 MB with two heaps, by 17 MB with four and by 20 MB with eight
   // (measured). The solver allocates no memory while it runs.
   mallopt(M_ARENA_MAX, 2);
-  raise_file_limit();
+  const rlim_t files = raise_file_limit();
   umask(077);  // only the owner may read formulations
   spdlog::set_default_logger(spdlog::stderr_logger_mt("tribodynd"));
   spdlog::set_level(spdlog::level::from_str(settings->log_level));
   try {
     if (!settings->command.empty()) return run_command(*settings);
     if (settings->check_only) return check(*settings);
+    if (files < kLeastFiles) {
+      const std::string limit = "the limit of open files is " + std::to_string(files) +
+                                "; allowed: " + std::to_string(kLeastFiles) +
+                                " or more (ulimit -n, LimitNOFILE of systemd)";
+      return complain(kExitCannotListen, limit.c_str());
+    }
     return serve(*settings, listen_addresses(*settings), kSignals);
   } catch (const ListenError& error) {
     return complain(kExitCannotListen, error.what());

@@ -17,6 +17,9 @@ inline constexpr double kBoundaryLubrication = 1;
 inline constexpr double kLowestComparedPressure = 0.85e9, kHighestComparedPressure = 1.35e9;
 /// Viscosities at the inlet at which the laws hold [Pa s], and the thickest film [m].
 inline constexpr double kLeastViscosity = 1e-4, kMostViscosity = 1e6, kThickestFilm = 10e-6;
+/// Beyond these no contact is lubricated: friction [-], and the hottest film [K], in which every
+/// oil decomposes.
+inline constexpr double kMostFriction = 1, kHottestFilm = 1000;
 
 /// Limits of the contacts of a mesh that a user states, e.g. of a scuffing test or of a material.
 /// They change no figure.

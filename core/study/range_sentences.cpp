@@ -105,6 +105,16 @@ std::string thick_film_sentence(double film_thickness) {
          brief_text(1e6 * kThickestFilm) + " um no contact is fed with so much oil";
 }
 
+std::string no_lubricated_contact_sentence(double friction, double temperature) {
+  if (friction > kMostFriction) {
+    return "the friction coefficient is " + brief_text(friction) +
+           "; that of a lubricated contact " + "is below " + brief_text(kMostFriction);
+  }
+  if (!(temperature > kHottestFilm)) return {};
+  return "the film is at " + brief_text(temperature - kZeroCelsius) + " C; above " +
+         brief_text(kHottestFilm - kZeroCelsius) + " C every oil decomposes";
+}
+
 std::string isothermal_sentence(const ModelOptions& options) {
   if (!options.isothermal) return {};
   return "contact temperature held at the inlet's: friction at speed is too high";

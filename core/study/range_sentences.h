@@ -32,6 +32,8 @@ std::string starvation_sentence(double heating_factor, const ModelOptions& optio
 std::string viscosity_range_sentence(double viscosity);
 /// Of the thickness of the film [m].
 std::string thick_film_sentence(double film_thickness);
+/// Empty for what a lubricated contact can have.
+std::string no_lubricated_contact_sentence(double friction, double temperature);
 std::string isothermal_sentence(const ModelOptions& options);
 
 }  // namespace tribodyn

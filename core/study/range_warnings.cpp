@@ -109,6 +109,7 @@ RangeFigures range_figures(const ContactSolution& contact, double inlet_heating_
   out.film_ratio = contact.film_ratio;
   out.film_thickness = contact.central_film_thickness;
   out.contact_temperature = contact.contact_temperature;
+  out.friction_coefficient = contact.friction_coefficient;
   out.limiting_stress_area_share = contact.limiting_stress_area_share;
   out.inlet_heating_factor = inlet_heating_factor;
   out.inlet_viscosity = contact.inlet_viscosity;
@@ -138,6 +139,8 @@ std::vector<RangeWarning> range_warnings(const RangeGrounds& grounds, const Rang
          std::max(kLowestComparedPressure / r.maximum_pressure,
                   r.maximum_pressure / kHighestComparedPressure),
          pressure_sentence(r.maximum_pressure));
+    warn("NO_LUBRICATED_CONTACT", r.friction_coefficient + r.contact_temperature / kHottestFilm,
+         no_lubricated_contact_sentence(r.friction_coefficient, r.contact_temperature));
     warn("THICK_FILM", r.film_thickness, thick_film_sentence(r.film_thickness));
     warn("INLET_HEATING_LEFT_OUT", -r.inlet_heating_factor,
          inlet_heating_sentence(r.inlet_heating_factor, grounds.options));

@@ -15,6 +15,7 @@ struct RangeFigures {
   double film_ratio = 0;                  ///< least lambda_s [-]
   double film_thickness = 0;              ///< mean h_cen, weighted with the load [m]
   double contact_temperature = 0;         ///< highest T_c [K]
+  double friction_coefficient = 0;        ///< of a contact alone [-]
   double limiting_stress_area_share = 0;  ///< as in PointResult [-]
   double inlet_heating_factor = 1;        ///< least phi_T, whether the model has it or not [-]
   double inlet_viscosity = 0;             ///< [Pa s]

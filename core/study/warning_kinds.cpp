@@ -44,6 +44,8 @@ constexpr WarningKind kKinds[] = {
     {"VISCOSITY_MISFIT", "viscosity law misses a measurement", kNote},
     {"VOGEL_REFERENCE_TEMPERATURE_ASSUMED", "curvature of the viscosity law assumed", kNote},
     {"VISCOSITY_INDEX_UNUSUAL", "viscosity index of no gear oil", kCaution},
+    {"NO_LUBRICATED_CONTACT", "friction or heat that no oil survives: do not rank oils here",
+     kWithholdsVerdict},
 };
 
 }  // namespace

@@ -191,7 +191,12 @@ Outcome<v1::PurgeReport> purge_resource(Application& application, const Request&
   v1::PurgeReport report;
   report.set_name(full_name(call.project, request.name()));
   const auto erase = [&] {
-    for (const auto& file : store.erase_removed()) report.add_remaining_files(file.filename());
+    const bool sees_all = call.grant->projects.empty();
+    const auto copies = store.erase_removed(sees_all);
+    report.set_copies_remain(!sees_all && !copies.empty());
+    for (const auto& file : copies) {
+      if (sees_all) report.add_remaining_files(file.filename());
+    }
     return report;
   };
   for (int attempt = 0; attempt < kUpdateAttempts; ++attempt) {

@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <deque>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <memory>
@@ -46,20 +45,15 @@ using std::chrono::seconds;
 
 constexpr auto kShutdownLimit = seconds(30);
 constexpr auto kHurriedLimit = seconds(3);
+constexpr milliseconds kLockWait{1500};  // a command on tokens has the database for a moment
 
 milliseconds to_milliseconds(double value) {
   return milliseconds(static_cast<std::int64_t>(1000 * value));
 }
 
-/// Writes the addresses, a line each, under another name and renames the file, so that a reader
-/// never sees a part of it.
+/// Writes the addresses, a line each. A reader never sees a part of the file.
 void write_port_file(const std::string& path, const std::vector<std::string>& addresses) {
-  const std::string unfinished = path + ".new";
-  {
-    std::ofstream file(unfinished);
-    for (const std::string& each : addresses) file << each << '\n';
-  }
-  std::filesystem::rename(unfinished, path);
+  replace_file(path, fmt::format("{}\n", fmt::join(addresses, "\n")), 0644);
 }
 
 /// Waits for a signal. Returns its number, or -1 after `limit`.
@@ -220,14 +214,15 @@ std::shared_ptr<const StaticFiles> dashboard_files(const Settings& settings) {
 /// Starts the REST interface. Returns null if no address is set.
 std::unique_ptr<Rest> listen_for_http(const Settings& settings, CallDispatcher& dispatcher,
                                       SimulationJobs& jobs, const GrpcServer& server,
-                                      const std::string& session_key) {
+                                      Microseconds now) {
   if (settings.http_listen.empty()) return nullptr;
   jobs.metrics().set_build(TRIBODYN_VERSION, kModelVersion, platform());
   std::map<std::string, RestHandler::Page> pages = description_pages(dispatcher.methods());
   pages["/metrics"] = {metrics_page(jobs)};
   pages["/healthz"] = {health_page(server), true};
-  const RestDashboard dashboard{std::make_shared<SessionCookies>(session_key),
-                                dashboard_files(settings)};
+  const RestDashboard dashboard{
+      std::make_shared<SessionCookies>(std::make_shared<SessionFile>(settings.database, now)),
+      dashboard_files(settings)};
   auto out = std::make_unique<Rest>(dispatcher, std::move(pages), dashboard,
                                     http_addresses(settings), settings.tls);
   for (const HttpServer& each : out->servers) {
@@ -251,7 +246,7 @@ std::vector<ListenAddress> listen_addresses(const Settings& settings) {
 
 int serve(const Settings& settings, const std::vector<ListenAddress>& addresses,
           const sigset_t& signals) {
-  Store store(settings.database);
+  Store store(settings.database, schema_steps(), kLockWait);
   if (store.migration_backup()) {
     spdlog::info("the database was brought to schema {}; {} holds it as it was before",
                  schema_steps().size(), store.migration_backup()->string());
@@ -281,7 +276,7 @@ int serve(const Settings& settings, const std::vector<ListenAddress>& addresses,
                                           to_milliseconds(settings.unread_limit_seconds)});
   GrpcServer server(dispatcher, addresses, settings.tls);
   const std::unique_ptr<Rest> rest =
-      listen_for_http(settings, dispatcher, jobs, server, application.page_token_key);
+      listen_for_http(settings, dispatcher, jobs, server, system_time());
   const std::string wrong = jobs.start();
   if (!wrong.empty()) return complain(kExitWrongResults, wrong);
   server.set_serving(true);

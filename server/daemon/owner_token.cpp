@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "server/application/authorizer.h"
+#include "server/storage/durable_files.h"
 #include "server/storage/store_error.h"
 #include "server/support/random_bytes.h"
 
@@ -81,17 +82,7 @@ std::string new_secret() {
 }
 
 void write_owner_token(const fs::path& database, const std::string& secret) {
-  const fs::path path = owner_token_file(database);
-  const fs::path unfinished = path.string() + ".new";
-  const std::string text = secret + "\n";
-  unlink(unfinished.c_str());
-  const OpenFile file{
-      open(unfinished.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600)};
-  if (file.descriptor < 0 ||
-      write(file.descriptor, text.data(), text.size()) != static_cast<ssize_t>(text.size()) ||
-      fdatasync(file.descriptor) != 0 || rename(unfinished.c_str(), path.c_str()) != 0) {
-    throw failed(path, "written");
-  }
+  replace_file(owner_token_file(database), secret + "\n");
 }
 
 void provide_owner_token(TokenTable& tokens, const fs::path& database, Microseconds now) {

@@ -114,6 +114,8 @@ void add_token_commands(CLI::App& app, Settings& settings) {
       ->check(between(0.0001, 1e6));
   add("list", "Print all tokens, also expired and revoked ones, without their secrets");
   add_name(add("revoke", "Refuse every token of NAME from now on, and end its streams"));
+  add("end-sessions",
+      "End the sessions of all browsers, by a new key for them in DATABASE.sessions");
   CLI::App* rotate = add("rotate",
                          "Print a new token in place of that of NAME, with the same scope and "
                          "projects. The owner's goes to DATABASE.token");

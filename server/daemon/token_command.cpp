@@ -13,6 +13,7 @@
 #include "server/application/audit_log.h"
 #include "server/application/authorizer.h"
 #include "server/daemon/owner_token.h"
+#include "server/storage/session_file.h"
 #include "server/storage/store.h"
 #include "server/storage/token_table.h"
 
@@ -131,7 +132,9 @@ int change_tokens(const Settings& settings) {
     list_tokens(tokens, now);
     return kExitStopped;
   }
-  if (asked.action == "revoke") {
+  if (asked.action == "end-sessions") {
+    SessionFile::renew(settings.database);
+  } else if (asked.action == "revoke") {
     if (tokens.revoke(asked.name, now) == 0) return refuse(asked.name + " has no valid token");
   } else if (asked.action == "create") {
     for (const StoredToken& each : tokens.all()) {
@@ -166,7 +169,8 @@ int change_tokens(const Settings& settings) {
   CallContext command{.client = "tribodynd-tokens", .request_id = "-"};
   AuditLog(settings.database + ".audit").record(command, "tokens-" + asked.action, {}, asked.name);
   const int out = is_served ? wait_for_server(tokens) : kExitStopped;
-  const bool has_secret = asked.action != "revoke" && asked.name != kOwner && !asked.of_certificate;
+  const bool has_secret = (asked.action == "create" || asked.action == "rotate") &&
+                          asked.name != kOwner && !asked.of_certificate;
   if (has_secret) fmt::print("{}\n", secret);
   return out;
 }

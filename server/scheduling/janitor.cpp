@@ -2,6 +2,10 @@
 
 #include <spdlog/spdlog.h>
 
+#include <cstdlib>
+#include <fstream>
+#include <utility>
+
 namespace tribodyn::server {
 namespace {
 
@@ -10,6 +14,17 @@ constexpr Microseconds kLeastAge = 60'000'000;
 constexpr int kAtATime = 50;
 
 }  // namespace
+
+bool ClockTrust::look(Microseconds wall, Microseconds running, std::optional<Microseconds> known) {
+  constexpr Microseconds kDay = 86'400'000'000;
+  const Microseconds offset = wall - running;
+  const bool has_jumped =
+      offset_ ? std::abs(offset - *offset_) > kLargestStep : known && wall > *known + kDay;
+  offset_ = offset;
+  if (has_jumped) held_to_ = running + kHold;
+  if (held_to_ && running >= *held_to_) held_to_.reset();
+  return !held_to_;
+}
 
 Janitor::Janitor(Store& store, const Retention& retention, std::function<Microseconds()> clock)
     : store_(store), retention_(retention), clock_(std::move(clock)) {}
@@ -65,10 +80,21 @@ void Janitor::clean() {
   if (removed > 0) spdlog::info("event=simulations_removed count={}", removed);
 }
 
+bool Janitor::trusts_clock() {
+  double seconds = 0;
+  std::ifstream("/proc/uptime") >> seconds;  // not a clock that the process may have faked or set
+  const bool out =
+      trust_.look(clock_(), static_cast<Microseconds>(1e6 * seconds), store_.latest_creation());
+  if (out != std::exchange(trusted_clock_, out)) {
+    spdlog::warn(out ? "event=clock_trusted" : "event=clock_jumped nothing_removed_for_minutes=60");
+  }
+  return out;
+}
+
 void Janitor::run() {
   while (!is_stopping()) {
     try {
-      clean();
+      if (trusts_clock()) clean();
     } catch (const StoreError& error) {
       spdlog::error("{}", error.what());
     }

@@ -21,7 +21,26 @@ struct Retention {
   std::int64_t disk_budget_bytes = 0;
 };
 
-/// A thread that removes expired simulations and, beyond the disk budget, those that ended first.
+/// Says whether the wall clock may be believed when something is to be removed for its age: not for
+/// an hour after it jumped against the time since the machine started, and not for an hour after
+/// the first look if the clock is more than a day ahead of `known`, the latest time that was
+/// written. Not safe for concurrent access.
+class ClockTrust {
+ public:
+  /// Takes note of both clocks; to be called every few seconds. `running`: time since the machine
+  /// started, sleep included.
+  bool look(Microseconds wall, Microseconds running, std::optional<Microseconds> known);
+
+  static constexpr Microseconds kHold = 3'600'000'000;
+  static constexpr Microseconds kLargestStep = 10'000'000;  ///< beyond it a change is a jump
+
+ private:
+  std::optional<Microseconds> offset_;   // of the wall clock at the last look
+  std::optional<Microseconds> held_to_;  // on the clock `running`
+};
+
+/// A thread that removes expired simulations and, beyond the disk budget, those that ended first;
+/// nothing while the clock is not to be believed (ClockTrust).
 /// It removes a few in each transaction, so that other writers wait briefly. It keeps each
 /// simulation for a minute after its end, so that a client that waits can read the result. Safe for
 /// concurrent access; `start` and `stop` from one thread.
@@ -40,6 +59,7 @@ class Janitor {
 
  private:
   void run();
+  bool trusts_clock();
   // These functions return the number of simulations that they removed.
   int remove_expired();
   int remove_beyond_budget();
@@ -51,6 +71,8 @@ class Janitor {
   std::mutex mutex_;
   std::condition_variable changed_;
   bool stopping_ = false;  // guarded by mutex_
+  ClockTrust trust_;       // of the thread, as below
+  bool trusted_clock_ = true;
   std::thread thread_;
 };
 

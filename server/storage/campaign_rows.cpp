@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "server/storage/checksum.h"
 #include "server/storage/life_cycle.h"
 #include "server/storage/list_conditions.h"
 #include "server/storage/resource_rows.h"
@@ -17,8 +18,8 @@ constexpr char kSelectCampaigns[] =
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = lubricant), "
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = gear_set), "
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = surface), "
-    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle) "
-    "FROM campaigns ";
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle), "
+    "request_checksum FROM campaigns ";
 
 /// Returns the relative name of a revision; empty if it is not of this collection: no column is
 /// NULL, and one without a resource has the lubricant.
@@ -61,6 +62,7 @@ StoredCampaign stored_campaign(const SQLite::Statement& query) {
   out.revisions.gear_set = own_revision(next().getString(), kGearSets);
   out.revisions.surface = own_revision(next().getString(), kSurfaces);
   out.revisions.vehicle = own_revision(next().getString(), kVehicles);
+  require_undamaged(out.request, next().getInt64(), "the stored request of ", name_of(out));
   return out;
 }
 
@@ -110,9 +112,9 @@ CampaignAdded insert_campaign(Connection& db, const NewCampaign& campaign, Micro
   execute(db,
           "INSERT INTO campaigns (project, number, state, create_time, request_id, request_hash, "
           "input_hash, model_version, platform, client, principal, candidates, conditions, "
-          "cost_seconds, budget_seconds, budget_points, stored_bytes, request, candidate_table, "
-          "lubricant, gear_set, surface, vehicle) "
-          "VALUES (?, ?, 1, ?, nullif(?, ''), ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+          "cost_seconds, budget_seconds, budget_points, stored_bytes, request, request_checksum, "
+          "candidate_table, table_checksum, lubricant, gear_set, surface, vehicle) "
+          "VALUES (?, ?, 1, ?, nullif(?, ''), ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
           "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
           "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
           "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
@@ -122,9 +124,10 @@ CampaignAdded insert_campaign(Connection& db, const NewCampaign& campaign, Micro
           campaign.client, campaign.principal, campaign.candidates, campaign.conditions,
           campaign.cost_seconds, campaign.budget.processor_seconds, campaign.budget.points,
           static_cast<std::int64_t>(campaign.request.size() + campaign.candidate_table.size()),
-          Blob{campaign.request}, Blob{campaign.candidate_table}, revisions[0].name,
-          revisions[0].number, revisions[1].name, revisions[1].number, revisions[2].name,
-          revisions[2].number, revisions[3].name, revisions[3].number);
+          Blob{campaign.request}, checksum(campaign.request), Blob{campaign.candidate_table},
+          checksum(campaign.candidate_table), revisions[0].name, revisions[0].number,
+          revisions[1].name, revisions[1].number, revisions[2].name, revisions[2].number,
+          revisions[3].name, revisions[3].number);
   const std::int64_t id = db.getLastInsertRowid();
   insert_campaign_labels(db, id, campaign.labels);
   insert_lubricants(db, id, campaign.project, campaign.candidate_lubricants);
@@ -174,18 +177,18 @@ Page<StoredCampaign> query_campaigns(Connection& db, const CampaignQuery& wanted
 bool describe_campaign(Connection& db, const StoredCampaign& present, const std::string& request,
                        const CampaignLabels& labels,
                        const std::optional<std::string>& candidate_table) {
-  const int changed =
-      execute(db,
-              "UPDATE campaigns SET stored_bytes = stored_bytes + length(?1) - length(request), "
-              "request = ?1 WHERE id = ?2 AND request = ?3 AND candidates = ?4",
-              Blob{request}, present.id, Blob{present.request}, present.candidates);
+  const int changed = execute(
+      db,
+      "UPDATE campaigns SET stored_bytes = stored_bytes + length(?1) - length(request), "
+      "request = ?1, request_checksum = ?5 WHERE id = ?2 AND request = ?3 AND candidates = ?4",
+      Blob{request}, present.id, Blob{present.request}, present.candidates, checksum(request));
   if (changed == 0) return false;
   if (candidate_table) {
     execute(db,
             "UPDATE campaigns SET "
             "stored_bytes = stored_bytes + length(?1) - length(candidate_table), "
-            "candidate_table = ?1 WHERE id = ?2",
-            Blob{*candidate_table}, present.id);
+            "candidate_table = ?1, table_checksum = ?3 WHERE id = ?2",
+            Blob{*candidate_table}, present.id, checksum(*candidate_table));
   }
   execute(db, "DELETE FROM campaign_labels WHERE campaign = ?", present.id);
   insert_campaign_labels(db, present.id, labels);
@@ -219,15 +222,17 @@ CandidatesAdded insert_candidates(Connection& db, const NewCandidates& added, Mi
   if (const auto earlier = query_append(db, added.campaign, added.request_id, added.request_hash)) {
     return {*earlier, query_campaign(db, added.campaign)};
   }
-  Prepared update(db,
-                  "UPDATE campaigns SET candidates = ?2, candidate_table = ?3, input_hash = ?4, "
-                  "cost_seconds = cost_seconds + ?5, "
-                  "stored_bytes = stored_bytes + length(?3) - length(candidate_table), "
-                  "lost_attempts = CASE state WHEN 3 THEN ?7 ELSE lost_attempts END, "
-                  "end_time = NULL, state = CASE state WHEN 3 THEN 1 ELSE state END "
-                  "WHERE id = ?1 AND state <= 3 AND candidates = ?6 RETURNING project",
-                  added.campaign, added.candidates, Blob{added.candidate_table}, added.input_hash,
-                  added.cost_seconds, added.candidates_before, lost_attempts);
+  Prepared update(
+      db,
+      "UPDATE campaigns SET candidates = ?2, candidate_table = ?3, table_checksum = ?8, "
+      "input_hash = ?4, "
+      "cost_seconds = cost_seconds + ?5, "
+      "stored_bytes = stored_bytes + length(?3) - length(candidate_table), "
+      "lost_attempts = CASE state WHEN 3 THEN ?7 ELSE lost_attempts END, "
+      "end_time = NULL, state = CASE state WHEN 3 THEN 1 ELSE state END "
+      "WHERE id = ?1 AND state <= 3 AND candidates = ?6 RETURNING project",
+      added.campaign, added.candidates, Blob{added.candidate_table}, added.input_hash,
+      added.cost_seconds, added.candidates_before, lost_attempts, checksum(added.candidate_table));
   if (!update.executeStep()) return {kChanged, query_campaign(db, added.campaign)};
   const std::string project = update.getColumn(0).getString();
   update.executeStep();  // to its end: only then is it done
@@ -238,8 +243,15 @@ CandidatesAdded insert_candidates(Connection& db, const NewCandidates& added, Mi
 }
 
 std::string query_candidate_table(Connection& db, std::int64_t id) {
-  Prepared query(db, "SELECT candidate_table FROM campaigns WHERE id = ?", id);
-  return query.executeStep() ? query.getColumn(0).getString() : std::string();
+  Prepared query(db,
+                 "SELECT candidate_table, table_checksum, project, number FROM campaigns "
+                 "WHERE id = ?",
+                 id);
+  if (!query.executeStep()) return {};
+  std::string out = query.getColumn(0).getString();
+  require_undamaged(out, query.getColumn(1).getInt64(), "the stored candidates of ",
+                    campaign_name(query.getColumn(2).getString(), query.getColumn(3).getInt64()));
+  return out;
 }
 
 std::optional<StoredCampaign> change_campaign(Connection& db, const CampaignChange& change) {

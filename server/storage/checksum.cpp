@@ -4,10 +4,18 @@
 #include <sqlite3.h>
 #include <xxhash.h>
 
+#include "server/storage/store_error.h"
+
 namespace tribodyn::server {
 
 std::int64_t checksum(std::string_view bytes) {
   return static_cast<std::int64_t>(XXH3_64bits(bytes.data(), bytes.size()));
+}
+
+void require_undamaged(std::string_view bytes, std::int64_t stored_checksum, const char* what,
+                       const std::string& name) {
+  if (checksum(bytes) == stored_checksum) return;
+  throw StoreError(StoreError::Kind::kDataLoss, what + name + " is damaged");
 }
 
 void add_checksum_function(Connection& db) {

@@ -189,6 +189,21 @@ void check_tiles(Connection& db, Problems& problems) {
   }
 }
 
+void check_campaigns(Connection& db, Problems& problems) {
+  SQLite::Statement query(db,
+                          "SELECT request, request_checksum, candidate_table, table_checksum, "
+                          "project, number FROM campaigns");
+  while (problems.size() < kMaximumProblems && query.executeStep()) {
+    const auto is_whole = [&](int column) {
+      return checksum(bytes_of(query.getColumn(column))) == query.getColumn(column + 1).getInt64();
+    };
+    if (is_whole(0) && is_whole(2)) continue;
+    problems.push_back(
+        campaign_name(query.getColumn(4).getString(), query.getColumn(5).getInt64()) +
+        ": its request or its candidates differ from their checksum");
+  }
+}
+
 void check_ledgers(Connection& db, Problems& problems) {
   SQLite::Statement query(db, "SELECT id, content_hash, body FROM ledgers");
   while (problems.size() < kMaximumProblems && query.executeStep()) {
@@ -270,7 +285,8 @@ void check_simulations(Connection& db, const HashInputs& hash_inputs, Problems& 
       "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.gear_set), "
       "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.surface), "
       "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.vehicle), "
-      "s.project, s.number FROM simulations s LEFT JOIN results b ON b.id = s.result");
+      "s.project, s.number, s.request_checksum FROM simulations s LEFT JOIN results b ON b.id = "
+      "s.result");
   while (problems.size() < kMaximumProblems && query.executeStep()) {
     const std::string project = query.getColumn(8).getString();
     const std::string name = simulation_name(project, query.getColumn(9).getInt64());
@@ -278,6 +294,8 @@ void check_simulations(Connection& db, const HashInputs& hash_inputs, Problems& 
     v1::Simulation request;
     if (!request.ParseFromString(query.getColumn(1).getString())) {
       problems.push_back(name + ": its request cannot be read");
+    } else if (checksum(bytes_of(query.getColumn(1))) != query.getColumn(10).getInt64()) {
+      problems.push_back(name + ": its request differs from its checksum");
     }
     if (query.getColumn(3).isNull()) continue;
     v1::SimulationResult result;
@@ -351,6 +369,7 @@ Problems problems_of(Connection& db, const std::filesystem::path& path,
   check_histories(db, problems);
   check_tiles(db, problems);
   check_ledgers(db, problems);
+  check_campaigns(db, problems);
   check_bodies(db, problems);
   check_properties(db, problems);
   check_simulations(db, hash_inputs, problems);

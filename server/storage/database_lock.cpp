@@ -5,14 +5,18 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <fstream>
 #include <string>
 #include <system_error>
+#include <thread>
 
 #include "server/storage/store_error.h"
 
 namespace tribodyn::server {
 namespace {
+
+constexpr std::chrono::milliseconds kNoWait{0}, kBetweenTries{20};
 
 /// A lock file holds two lines: the number of the process, and what it remembers.
 struct LockFileText {
@@ -40,7 +44,8 @@ std::filesystem::path lock_file_of(const std::filesystem::path& database) {
 
 }  // namespace
 
-DatabaseLock::DatabaseLock(const std::filesystem::path& database) : database_(database) {
+DatabaseLock::DatabaseLock(const std::filesystem::path& database, std::chrono::milliseconds wait)
+    : database_(database), wait_(wait) {
   lock_file_ = lock(lock_file_of(database_), O_RDWR | O_CREAT);
   try {
     if (std::filesystem::exists(database_)) lock_new_file();
@@ -80,8 +85,12 @@ int DatabaseLock::lock(const std::filesystem::path& file, int flags) const {
     throw StoreError(StoreError::Kind::kCannotOpen, "cannot open " + file.string() + ": " +
                                                         std::generic_category().message(errno));
   }
-  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
-  const int reason = errno;
+  int reason = 0;
+  for (auto waited = kNoWait; reason == 0; waited += kBetweenTries) {
+    if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
+    if (errno != EWOULDBLOCK || waited >= wait_) reason = errno;
+    if (reason == 0) std::this_thread::sleep_for(kBetweenTries);
+  }
   close(descriptor);
   if (reason == EWOULDBLOCK) {
     throw StoreError(StoreError::Kind::kInUse, "database " + database_.string() +

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <string>
 
@@ -17,8 +18,9 @@ namespace tribodyn::server {
 class DatabaseLock {
  public:
   /// Locks the lock file and, if it exists, the database file. Throws StoreError kInUse, which
-  /// names the other process if it is known, or kCannotOpen.
-  explicit DatabaseLock(const std::filesystem::path& database);
+  /// names the other process if it is known, if another one still has a lock after `wait`; or
+  /// kCannotOpen.
+  explicit DatabaseLock(const std::filesystem::path& database, std::chrono::milliseconds wait = {});
   ~DatabaseLock();
   DatabaseLock(const DatabaseLock&) = delete;
   DatabaseLock& operator=(const DatabaseLock&) = delete;
@@ -37,6 +39,7 @@ class DatabaseLock {
   int lock(const std::filesystem::path& file, int flags) const;
 
   const std::filesystem::path database_;
+  const std::chrono::milliseconds wait_;
   int lock_file_ = -1;
   int database_file_ = -1;
 };

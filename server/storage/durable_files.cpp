@@ -55,6 +55,22 @@ bool add_name(const std::filesystem::path& file, const std::filesystem::path& na
   throw file_error("keep " + file.string() + " as", name, errno);
 }
 
+void replace_file(const std::filesystem::path& file, std::string_view text, unsigned mode) {
+  const std::filesystem::path unfinished = file.string() + ".new";
+  unlink(unfinished.c_str());
+  const int descriptor =
+      open(unfinished.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, mode);
+  if (descriptor < 0) throw file_error("write", file, errno);
+  const bool is_written =
+      write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
+      fdatasync(descriptor) == 0;
+  const int reason = errno;
+  close(descriptor);
+  if (!is_written) throw file_error("write", file, reason);
+  if (rename(unfinished.c_str(), file.c_str()) != 0) throw file_error("write", file, errno);
+  sync_folder_of(file);
+}
+
 UnfinishedFile::UnfinishedFile(const std::filesystem::path& target) : target_(target) {
   std::string name = target.string() + ".new-XXXXXX";
   const int descriptor = mkostemp(name.data(), O_CLOEXEC);

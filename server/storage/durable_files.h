@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 namespace tribodyn::server {
 
@@ -19,6 +20,10 @@ void sync_folder_of(const std::filesystem::path& file);
 
 /// Gives a file a second name (a hard link). Returns false if that name is taken.
 bool add_name(const std::filesystem::path& file, const std::filesystem::path& name);
+
+/// Replaces a file atomically by one with this text and mode, on disk when the call returns. It
+/// follows no link.
+void replace_file(const std::filesystem::path& file, std::string_view text, unsigned mode = 0600);
 
 /// A new file that will become `target`. The constructor creates it empty beside `target` under an
 /// unused name ("<target>.new-XXXXXX"). The destructor removes it, unless it was published, and the

@@ -141,6 +141,12 @@ fs::path keep_old(const fs::path& database) {
   return kept;
 }
 
+/// Makes a copy readable from a medium that cannot be written: without a write-ahead log.
+void leave_log_mode(const fs::path& copy) {
+  Connection db = open_existing(copy, SQLite::OPEN_READWRITE);
+  db.exec("PRAGMA journal_mode = DELETE");
+}
+
 }  // namespace
 
 void backup_database(const fs::path& database, const fs::path& copy) {
@@ -155,6 +161,7 @@ void backup_database(const fs::path& database, const fs::path& copy) {
       throw StoreError(StoreError::Kind::kCorrupt,
                        database.string() + " is damaged, no backup was made: " + problems.front());
     }
+    leave_log_mode(unfinished.path());
     if (!unfinished.publish_as_new()) throw is_there;
   });
 }
@@ -171,9 +178,13 @@ fs::path backup_before_migration(const fs::path& database, int schema) {
   });
 }
 
+std::vector<fs::path> migration_backups(const fs::path& database) {
+  return files_beside(database, kBeforeMigration);
+}
+
 void remove_migration_backups(const fs::path& database) {
   translated(database, [&] {
-    for (const fs::path& each : files_beside(database, kBeforeMigration)) fs::remove(each);
+    for (const fs::path& each : migration_backups(database)) fs::remove(each);
     sync_folder_of(database);
   });
 }

@@ -21,7 +21,9 @@ void backup_database(const std::filesystem::path& database, const std::filesyste
 /// appears complete and on disk. Throws StoreError, and leaves no file, if it cannot be written.
 std::filesystem::path backup_before_migration(const std::filesystem::path& database, int schema);
 
-/// Removes the files that backup_before_migration() made for a database. Throws StoreError.
+/// Returns the files that backup_before_migration() made for a database, sorted. Throws StoreError.
+std::vector<std::filesystem::path> migration_backups(const std::filesystem::path& database);
+/// Removes these files. Throws StoreError.
 void remove_migration_backups(const std::filesystem::path& database);
 
 /// Returns the old databases that restore_database() kept beside a database, sorted. Throws

@@ -7,6 +7,7 @@
 #include "server/contract/resource_names.h"
 #include "server/storage/properties.h"
 #include "server/storage/resource_types.h"
+#include "server/storage/store_error.h"
 #include "server/support/sha256.h"
 
 namespace tribodyn::server {
@@ -145,6 +146,10 @@ StoredResource stored_resource(const SQLite::Statement& query) {
   if (!query.getColumn(6).isNull()) out.delete_time = query.getColumn(6).getInt64();
   out.content_hash = query.getColumn(7).getString();
   out.body = query.getColumn(8).getString();
+  if (sha256(out.body) != out.content_hash) {
+    throw StoreError(StoreError::Kind::kDataLoss,
+                     out.name + "@" + std::to_string(out.revision) + " is damaged");
+  }
   return out;
 }
 

@@ -55,12 +55,12 @@ namespace tribodyn::server {
 ///                Campaign.State, stop_reason and stop_message why it is paused or failed.
 ///                request: the Campaign as the client stated it, without its candidates, which are
 ///                the Campaign candidate_table; the name, labels, weights and attributes may
-///                change, candidates may be added. points_done and the like change with each tile. lost_attempts:
-///                processes that began to compute it and neither ended in good order nor wrote
-///                tiles for long, where no suspect explains the loss. lost_candidates: those that
-///                are refused because processes were lost while they computed them, since the
-///                campaign was resumed. stored_bytes: of both messages and of all blobs. When a
-///                campaign is removed, all below goes with it
+///                change, candidates may be added. points_done and the like change with each tile.
+///                lost_attempts: processes that began to compute it and neither ended in good order
+///                nor wrote tiles for long, where no suspect explains the loss. lost_candidates:
+///                those that are refused because processes were lost while they computed them,
+///                since the campaign was resumed. stored_bytes: of both messages and of all blobs.
+///                When a campaign is removed, all below goes with it
 ///   campaign_labels  what lists are filtered by beside columns of campaigns, of its request
 ///   campaign_lubricants  the lubricants that are candidates, in their revisions
 ///   campaign_appends  one row for each request that added candidates: the first of them;

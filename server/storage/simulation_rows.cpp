@@ -23,8 +23,8 @@ std::string simulation_columns(RevisionColumns form) {
             "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = surface), "
             "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle), ";
   return out +
-         "request_id, pinned, client, cost_seconds, principal, scheduling_class, project, number "
-         "FROM simulations ";
+         "request_id, pinned, client, cost_seconds, principal, scheduling_class, project, number, "
+         "request_checksum FROM simulations ";
 }
 
 namespace {
@@ -92,23 +92,24 @@ std::int64_t insert_row(Connection& db, const NewSimulation& simulation, std::in
   for (const std::string* name : names) {
     revisions.push_back(revision_row(simulation.project, *name));
   }
-  Prepared insert(
-      db,
-      "INSERT INTO simulations (state, sequence, create_time, deadline_time, request, request_id, "
-      "request_hash, is_forced, input_hash, ledger, client, cost_seconds, principal, "
-      "scheduling_class, lubricant, gear_set, surface, vehicle, project, number) "
-      "VALUES (1, 1, ?, ?, ?, nullif(?, ''), ?, ?, ?, ?, ?, ?, ?, ?, "
-      "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
-      "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
-      "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
-      "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), ?, ?) "
-      "RETURNING id, lubricant, gear_set, surface, vehicle",
-      now, simulation.deadline_time, Blob{simulation.request}, simulation.request_id,
-      simulation.request_hash, simulation.is_forced, simulation.key.input_hash, ledger,
-      simulation.client, simulation.cost_seconds, simulation.principal, simulation.scheduling_class,
-      revisions[0].name, revisions[0].number, revisions[1].name, revisions[1].number,
-      revisions[2].name, revisions[2].number, revisions[3].name, revisions[3].number,
-      simulation.project, number);
+  Prepared insert(db,
+                  "INSERT INTO simulations (state, sequence, create_time, deadline_time, request, "
+                  "request_checksum, request_id, request_hash, is_forced, input_hash, ledger, "
+                  "client, cost_seconds, principal, "
+                  "scheduling_class, lubricant, gear_set, surface, vehicle, project, number) "
+                  "VALUES (1, 1, ?, ?, ?, ?, nullif(?, ''), ?, ?, ?, ?, ?, ?, ?, ?, "
+                  "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
+                  "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
+                  "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
+                  "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), ?, ?) "
+                  "RETURNING id, lubricant, gear_set, surface, vehicle",
+                  now, simulation.deadline_time, Blob{simulation.request},
+                  checksum(simulation.request), simulation.request_id, simulation.request_hash,
+                  simulation.is_forced, simulation.key.input_hash, ledger, simulation.client,
+                  simulation.cost_seconds, simulation.principal, simulation.scheduling_class,
+                  revisions[0].name, revisions[0].number, revisions[1].name, revisions[1].number,
+                  revisions[2].name, revisions[2].number, revisions[3].name, revisions[3].number,
+                  simulation.project, number);
   insert.executeStep();
   const std::int64_t id = insert.getColumn(0).getInt64();
   for (int i = 0; i < 4; ++i) {
@@ -238,8 +239,9 @@ bool is_same_result(Connection& db, std::int64_t row, const NewResult& result) t
 bool set_labels(Connection& db, std::int64_t id, const std::string& before,
                 const std::string& request,
                 const std::vector<std::pair<std::string, std::string>>& labels) {
-  const int changed = execute(db, "UPDATE simulations SET request = ? WHERE id = ? AND request = ?",
-                              Blob{request}, id, Blob{before});
+  const int changed = execute(
+      db, "UPDATE simulations SET request = ?, request_checksum = ? WHERE id = ? AND request = ?",
+      Blob{request}, checksum(request), id, Blob{before});
   if (changed == 0) return false;
   execute(db, "DELETE FROM simulation_labels WHERE simulation = ?", id);
   insert_labels(db, id, labels);
@@ -293,6 +295,8 @@ StoredSimulation stored_simulation(const SQLite::Statement& query, RevisionNames
   out.scheduling_class = query.getColumn(24).getInt();
   out.project = query.getColumn(25).getString();
   out.number = query.getColumn(26).getInt64();
+  require_undamaged(out.request, query.getColumn(27).getInt64(), "the stored request of ",
+                    simulation_name(out.project, out.number));
   return out;
 }
 

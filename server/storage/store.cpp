@@ -128,9 +128,10 @@ void Store::run_read(const CallLimits& limits, const GroupCommit::Action& action
   }
 }
 
-Store::Store(const std::filesystem::path& database, const SchemaSteps& steps)
+Store::Store(const std::filesystem::path& database, const SchemaSteps& steps,
+             std::chrono::milliseconds lock_wait)
     : path_(usable_path(database)),
-      lock_(path_),
+      lock_(path_, lock_wait),
       writer_(open_writer(path_)),
       group_commit_(writer_, writer_mutex_) {
   open_schema(steps);
@@ -198,7 +199,7 @@ void Store::open_schema(const SchemaSteps& steps) {
 void Store::add_project(const std::string& project, const std::vector<NewResource>& resources,
                         Microseconds now) {
   run_write({}, [&](Connection& db) {
-    SQLite::Transaction transaction(db);
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     execute(db, "INSERT INTO projects (name) VALUES (?) ON CONFLICT DO NOTHING", project);
     for (const NewResource& each : resources) {
       const std::string name = full_name(project, each.name);
@@ -226,6 +227,14 @@ Removed Store::remove_oldest(Microseconds ended_by, int limit) {
 
 std::int64_t Store::used_bytes() {
   return read({}, [](Connection& db) { return server::used_bytes(db); });
+}
+
+std::optional<Microseconds> Store::latest_creation() {
+  return read({}, [](Connection& db) -> std::optional<Microseconds> {
+    Prepared query(db, "SELECT create_time FROM simulations ORDER BY id DESC LIMIT 1");
+    if (!query.executeStep()) return std::nullopt;
+    return query.getColumn(0).getInt64();
+  });
 }
 
 std::int64_t Store::removable_bytes() {

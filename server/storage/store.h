@@ -40,7 +40,8 @@ namespace tribodyn::server {
 class Store {
  public:
   /// Opens or creates the database and locks it against other servers.
-  explicit Store(const std::filesystem::path& database, const SchemaSteps& steps = schema_steps());
+  explicit Store(const std::filesystem::path& database, const SchemaSteps& steps = schema_steps(),
+                 std::chrono::milliseconds lock_wait = {});
   /// If another file took the place of the database, sets the write-ahead log aside, which would
   /// destroy that file (DatabaseFiles::set_log_aside), and tells the log of the process.
   ~Store();
@@ -135,10 +136,10 @@ class Store {
                        const CallLimits& limits = {});
   /// Returns what purge_resource() would find, and changes nothing.
   Dependents dependents_of(const StoredResource& present, const CallLimits& limits = {});
-  /// Like erase_removed() of removal.h, and removes the copies that migrations made. Other writers
-  /// wait meanwhile. Returns the old databases that restores kept, which may still contain removed
-  /// rows.
-  std::vector<std::filesystem::path> erase_removed();
+  /// Like erase_removed() of removal.h. `also_from_copies`: removes the copies that migrations made.
+  /// Other writers wait meanwhile. Returns the copies beside the database that may still contain
+  /// removed rows: also the databases that restores kept.
+  std::vector<std::filesystem::path> erase_removed(bool also_from_copies = true);
   /// Returns false if nothing was purged since the last erase_removed(). True in a new process, as
   /// the one before may have ended between the two.
   bool has_unerased_purge() const { return has_unerased_purge_; }
@@ -147,6 +148,8 @@ class Store {
   Removed remove_oldest(Microseconds ended_by, int limit);
   std::int64_t used_bytes();
   std::int64_t removable_bytes();
+  /// Returns the time at which the latest simulation was created; nullopt if there is none.
+  std::optional<Microseconds> latest_creation();
   /// Returns the event after number `after_sequence` (0: the first event); nullopt if there is
   /// none.
   std::optional<StoredEvent> next_event(std::int64_t id, std::int64_t after_sequence,

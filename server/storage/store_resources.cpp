@@ -65,7 +65,7 @@ std::vector<std::string> Store::resource_names(const std::string& project,
 std::optional<std::vector<StoredResource>> Store::write_resources(
     const std::vector<ResourceWrite>& writes, Microseconds now, const CallLimits& limits) {
   return write(limits, [&](Connection& db) -> std::optional<std::vector<StoredResource>> {
-    SQLite::Transaction transaction(db);
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     std::vector<StoredResource> written;
     written.reserve(writes.size());
     for (const auto& [resource, present] : writes) {
@@ -81,7 +81,7 @@ std::optional<std::vector<StoredResource>> Store::write_resources(
 template <class Change>
 bool Store::change(const CallLimits& limits, const StoredResource& present, const Change& change) {
   return write(limits, [&](Connection& db) {
-    SQLite::Transaction transaction(db);
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     if (!is_unchanged(db, present)) return false;
     change(db);
     transaction.commit();
@@ -121,13 +121,16 @@ Dependents Store::dependents_of(const StoredResource& present, const CallLimits&
   return read(limits, [&](Connection& db) { return server::dependents_of(db, present); });
 }
 
-std::vector<std::filesystem::path> Store::erase_removed() {
-  run_write({}, [this](Connection& db) {
+std::vector<std::filesystem::path> Store::erase_removed(bool also_from_copies) {
+  run_write({}, [&](Connection& db) {
     server::erase_removed(db);
-    remove_migration_backups(path_);
-    has_unerased_purge_ = false;  // under the writer's lock: no purge comes between
+    if (also_from_copies) remove_migration_backups(path_);
+    // Under the writer's lock: no purge comes between.
+    has_unerased_purge_ = !migration_backups(path_).empty();
   });
-  return former_databases(path_);
+  std::vector<std::filesystem::path> out = former_databases(path_);
+  for (std::filesystem::path& each : migration_backups(path_)) out.push_back(std::move(each));
+  return out;
 }
 
 }  // namespace tribodyn::server

@@ -16,11 +16,11 @@ for _ in $(seq 300); do
 done
 rpc=$(sed 's/.*://' port)
 rest=$(sed -nE 's,.*REST at http://127\.0\.0\.1:([0-9]+).*,\1,p' log)
-read -r https grpcs <<<"$(shuf -i 30000-32000 -n 2 | tr '\n' ' ')"
+read -r https grpcs http <<<"$(shuf -i 30000-32000 -n 3 | tr '\n' ' ')"
 {
   echo "pid $folder/nginx.pid; events {} http { access_log off;"
   for kind in client_body proxy fastcgi uwsgi scgi; do echo "${kind}_temp_path $folder/$kind;"; done
-  sed "s,/etc/tribodyn,$folder,; s/listen 443/listen 127.0.0.1:$https/; s/listen 8443/listen 127.0.0.1:$grpcs/
+  sed "s,/etc/tribodyn,$folder,; s/listen 443/listen 127.0.0.1:$https/; s/listen 80;/listen 127.0.0.1:$http;/; s/listen 8443/listen 127.0.0.1:$grpcs/
     s/:50652/:$rest/; s/:50651/:$rpc/" "$3/nginx.conf"
   echo '}'
 } >nginx.conf
@@ -45,6 +45,10 @@ status() { ask -o said -w '%{http_code}' "$@"; }
   fail "no simulation"
 ask -N -H "$token" "$url/v1/simulations/1:watch" >said || fail "no events"
 grep -q '^event: end$' said || fail "the events did not end"
+ask -D said -o /dev/null -X POST -H "$token" -H 'Content-Length: 0' "$url/session"
+grep -qi '^set-cookie: .*; *secure' said || fail "a session's cookie goes without TLS too"
+grep -qi '^strict-transport-security: ' said || fail "no HSTS"
+[ "$(curl -sS -o said -w '%{http_code}' "http://127.0.0.1:$http/")" = 301 ] || fail "no redirect from HTTP"
 ask --tls-max 1.1 --ciphers 'DEFAULT:@SECLEVEL=0' "$url/healthz" >said 2>&1 && fail "TLS 1.1"
 
 export XDG_CONFIG_HOME=$folder TRIBODYN_SERVER=localhost:$grpcs TRIBODYN_CA_FILE=certificates/ca.pem

@@ -175,5 +175,16 @@ TEST(RangeWarnings, SayWhereTheLimitingStressComesFrom) {
   EXPECT_NE(said(Origin::kStated).find("is as stated for this lubricant"), std::string::npos);
 }
 
+TEST(RangeWarnings, FrictionAndHeatThatNoOilSurvivesWithholdTheVerdict) {
+  Quiet place;
+  EXPECT_TRUE(place.sentence("NO_LUBRICATED_CONTACT").empty());
+  place.figures.friction_coefficient = 1e103;
+  EXPECT_FALSE(place.sentence("NO_LUBRICATED_CONTACT").empty());
+  place.figures.friction_coefficient = 0.1;
+  place.figures.contact_temperature = 2500;
+  EXPECT_FALSE(place.sentence("NO_LUBRICATED_CONTACT").empty());
+  EXPECT_TRUE(withholds_verdict("NO_LUBRICATED_CONTACT"));
+}
+
 }  // namespace
 }  // namespace tribodyn

@@ -8,9 +8,12 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <optional>
 #include <thread>
 
+#include "server/storage/database_lock.h"
 #include "server/transport/listen_address.h"
 #include "tests/service/grpc_fixture.h"
 #include "tests/service/raw_client.h"
@@ -366,6 +369,19 @@ TEST_F(DaemonTest, ADatabaseInUseIsRefusedUnderEveryName) {
   EXPECT_TRUE(create(point_simulation(), &created).ok()) << "the first one is not disturbed";
 }
 
+TEST(Flags, AStartWaitsForACommandThatHasTheDatabaseForAMoment) {
+  const TemporaryFolder folder;
+  const std::string database = folder.file("db");
+  { Store store(database); }
+  std::optional<DatabaseLock> command(database);
+  std::thread ends([&command] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    command.reset();
+  });
+  EXPECT_NO_THROW(Store(database, schema_steps(), std::chrono::seconds(10)));
+  ends.join();
+}
+
 TEST_F(DaemonTest, ASecondServerOnTheSameDatabaseOrPortIsRefused) {
   ServerProcess same_database(
       {"--listen", "127.0.0.1:0", "--database", folder_.file("tribodyn.db")},
@@ -541,6 +557,27 @@ TEST(Flags, ADatabaseOfAnotherVersionHasAnExitCodeOfItsOwn) {
     EXPECT_EQ(run_briefly(arguments, &log), 6) << log;
     EXPECT_THAT(log, HasSubstr(database + " was written by another development version"));
   }
+}
+
+TEST(Flags, TooFewDescriptorsRefuseTheStart) {
+  const TemporaryFolder folder;
+  ServerProcess process({"--listen", "127.0.0.1:0", "--database", folder.file("db")},
+                        folder.file("log"), 64);
+  EXPECT_EQ(process.wait(), 4);
+  EXPECT_THAT(process.log(), HasSubstr("open files is 64"));
+}
+
+TEST(Flags, APortFileDoesNotWriteThroughALink) {
+  const TemporaryFolder folder;
+  const std::string victim = folder.file("victim"), port = folder.file("port");
+  std::ofstream(victim) << "kept";
+  std::filesystem::create_symlink(victim, port + ".new");
+  ServerProcess process(
+      {"--listen", "127.0.0.1:0", "--database", folder.file("db"), "--port-file", port},
+      folder.file("log"));
+  EXPECT_TRUE(eventually([&] { return std::filesystem::exists(port); }));
+  std::ifstream file(victim);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "kept");
 }
 
 TEST(Flags, TheServiceManagerIsNotifiedOfStartAndStop) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "server/storage/maintenance.h"
 #include "server/transport/http/rest_handler.h"
 #include "tests/service/http_client.h"
 #include "tests/service/support.h"
@@ -39,7 +40,8 @@ class DashboardTest : public testing::Test {
     std::ofstream(folder_ / name) << text;
   }
   void start(std::chrono::seconds lifetime = std::chrono::hours(12)) {
-    const RestDashboard dashboard{std::make_shared<SessionCookies>("a key", lifetime),
+    const auto sessions = std::make_shared<SessionFile>(bench_.database(), system_time());
+    const RestDashboard dashboard{std::make_shared<SessionCookies>(sessions, lifetime),
                                   std::make_shared<StaticFiles>(folder_)};
     handler_ = std::make_unique<RestHandler>(
         dispatcher_, std::map<std::string, RestHandler::Page>{}, RestLimits{}, dashboard);
@@ -162,13 +164,46 @@ TEST_F(DashboardTest, AForgedAnOldAndARevokedSessionAreNone) {
   EXPECT_EQ(send("GET", "/v1/lubricants", {{"cookie", sign_in()}}).status, 401);
 }
 
+TEST_F(DashboardTest, AnEndedSessionIsNoneForACopyOfItsCookieAlsoAfterARestart) {
+  const std::string cookie = sign_in();
+  const Headers of_session = {{"cookie", cookie}, {"tribodyn-csrf", csrf_}};
+  const std::string other = sign_in();
+  ASSERT_EQ(send("DELETE", "/session", of_session).status, 204);
+  EXPECT_EQ(send("GET", "/v1/lubricants", {{"cookie", cookie}}).status, 401);
+  start();
+  EXPECT_EQ(send("GET", "/v1/lubricants", {{"cookie", cookie}}).status, 401);
+  EXPECT_EQ(send("GET", "/v1/lubricants", {{"cookie", other}}).status, 200);
+}
+
+TEST_F(DashboardTest, ANewKeyEndsAllSessionsWhileTheServerRuns) {
+  const std::string cookie = sign_in();
+  SessionFile::renew(bench_.database());
+  EXPECT_EQ(send("GET", "/v1/lubricants", {{"cookie", cookie}}).status, 401);
+  EXPECT_EQ(send("GET", "/v1/lubricants", {{"cookie", sign_in()}}).status, 200);
+}
+
+TEST_F(DashboardTest, ABackupHasNothingThatSealsASession) {
+  sign_in();
+  std::string key;
+  std::ifstream(bench_.database() + ".sessions") >> key;
+  ASSERT_EQ(key.size(), 64U);
+  const std::string copy = bench_.database() + ".copy";
+  backup_database(bench_.database(), copy);
+  std::ifstream file(copy, std::ios::binary);
+  const std::string bytes(std::istreambuf_iterator<char>(file), {});
+  EXPECT_EQ(bytes.find(key), std::string::npos);
+  EXPECT_EQ(std::filesystem::status(bench_.database() + ".sessions").permissions() &
+                std::filesystem::perms(077),
+            std::filesystem::perms::none);
+}
+
 TEST_F(DashboardTest, TheEndOfASessionTakesTheCookieAway) {
   const std::string cookie = sign_in();
+  EXPECT_EQ(send("DELETE", "/session", {{"cookie", cookie}}).status, 403);
   const HttpResponse response =
       send("DELETE", "/session", {{"cookie", cookie}, {"tribodyn-csrf", csrf_}});
   EXPECT_EQ(response.status, 204);
   EXPECT_THAT(response.headers.at("Set-Cookie"), HasSubstr("Max-Age=0"));
-  EXPECT_EQ(send("DELETE", "/session", {{"cookie", cookie}}).status, 403);
 }
 
 TEST_F(DashboardTest, ASessionBeginsWithAValidToken) {

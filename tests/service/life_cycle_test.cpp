@@ -527,5 +527,27 @@ TEST_F(LifeCycle, ACancelTakesEffectAtOnceAndFreesTheProcessor) {
   EXPECT_LT(usual[5], kMostMilliseconds);
 }
 
+TEST(ClockTrust, NothingIsRemovedForAnHourAfterTheClockJumped) {
+  constexpr Microseconds kSecond = 1'000'000, kYear = 31'536'000 * kSecond;
+  const Microseconds wall = 50 * kYear;
+  ClockTrust trust;
+  EXPECT_TRUE(trust.look(wall, 0, wall - 60 * kSecond));
+  EXPECT_TRUE(trust.look(wall + 5 * kSecond, 5 * kSecond, {}));
+  EXPECT_FALSE(trust.look(wall + kYear, 10 * kSecond, {})) << "a year in five seconds";
+  EXPECT_FALSE(trust.look(wall + 43 * kSecond, 43 * kSecond, {})) << "and back";
+  EXPECT_FALSE(trust.look(wall + 3600 * kSecond, 3600 * kSecond, {}));
+  EXPECT_TRUE(trust.look(wall + 3650 * kSecond, 3650 * kSecond, {}));
+}
+
+TEST(ClockTrust, NothingIsRemovedForAnHourAfterAStartLongAfterTheLastWrite) {
+  constexpr Microseconds kHour = 3'600'000'000;
+  const Microseconds known = 500'000 * kHour;
+  ClockTrust trust;
+  EXPECT_FALSE(trust.look(known + 1000 * kHour, 0, known));
+  EXPECT_TRUE(trust.look(known + 1001 * kHour, kHour, known));
+  EXPECT_TRUE(ClockTrust().look(known + 10 * kHour, 0, known));
+  EXPECT_TRUE(ClockTrust().look(known, 0, {})) << "an empty database";
+}
+
 }  // namespace
 }  // namespace tribodyn::server

@@ -12,6 +12,8 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <optional>
+#include <random>
 #include <thread>
 
 #include "server/application/stored_inputs.h"
@@ -19,6 +21,7 @@
 #include "server/storage/token_table.h"
 #include "server/storage/wire_layout.h"
 #include "tests/service/support.h"
+#include "tests/support/run_length.h"
 
 namespace tribodyn::server {
 namespace {
@@ -90,6 +93,82 @@ TEST_F(MaintenanceTest, AMigrationLosesNothingAndKeepsABackup) {
               0)
         << table;
   }
+}
+
+TEST_F(MaintenanceTest, ABackupThatCannotBeWrittenIsCheckedAndRestored) {
+  make();
+  const std::string folder = folder_.file("medium"), copy = folder + "/copy";
+  std::filesystem::create_directory(folder);
+  backup_database(path(), copy);
+  // Root may write to a folder and a file whatever their permissions: the log mode shows in bytes
+  // 18 and 19 of the header (1: no write-ahead log).
+  std::ifstream file(copy, std::ios::binary);
+  std::string header(20, '\0');
+  file.read(header.data(), 20);
+  EXPECT_EQ(header[18], 1);
+  EXPECT_EQ(header[19], 1);
+  std::filesystem::permissions(folder, std::filesystem::perms(0500));
+  EXPECT_THAT(check_database(copy), IsEmpty());
+  restore_database(copy, folder_.file("restored"));
+  std::filesystem::permissions(folder, std::filesystem::perms(0700));
+  EXPECT_THAT(check_database(folder_.file("restored")), IsEmpty());
+}
+
+TEST_F(MaintenanceTest, AFlippedBitChangesNothingUnseenOfResourcesRequestsCandidatesAndResults) {
+  make();
+  std::int64_t campaign = 0;
+  {
+    Store store(path());
+    NewCampaign added;
+    added.request = std::string(2000, 'r');
+    added.candidate_table = std::string(40'000, 't');
+    added.request_hash = added.input_hash = std::string(64, 'h');
+    added.candidates = 5;
+    added.revisions = {"lubricants/paper-fluid-1@1", "", "", ""};
+    campaign = store.add_campaign(added, 5).stored.id;
+  }
+  using Read = std::function<std::string(Store&)>;
+  std::vector<Read> reads = {[](Store& store) { return store.simulation(1)->request; },
+                             [](Store& store) { return store.result(1).value_or(""); },
+                             [campaign](Store& store) { return store.campaign(campaign)->request; },
+                             [campaign](Store& store) { return store.candidate_table(campaign); }};
+  for (const NewResource& each : seed_resources()) {
+    reads.push_back([name = full_name(kDefaultProject, each.name)](Store& store) {
+      return store.resource(name)->body;
+    });
+  }
+  std::vector<std::string> right;
+  for (Store store(path()); const Read& read : reads) right.push_back(read(store));
+  std::mt19937 random(7);
+  const auto size = std::filesystem::file_size(path());
+  int seen = 0;
+  for (int i = 0; i < (kUnderSanitizer ? 40 : 200); ++i) {
+    const std::string rotten = folder_.file("rotten");
+    std::filesystem::copy_file(path(), rotten, std::filesystem::copy_options::overwrite_existing);
+    std::fstream file(rotten, std::ios::binary | std::ios::in | std::ios::out);
+    const auto at = static_cast<std::streamoff>(random() % size);
+    file.seekg(at);
+    const auto flipped = static_cast<char>(file.get() ^ (1 << random() % 8));
+    file.seekp(at);
+    file.put(flipped);
+    file.close();
+    try {
+      Store store(rotten);
+      for (std::size_t k = 0; k < reads.size(); ++k) {
+        try {
+          EXPECT_EQ(reads[k](store), right[k]) << "read " << k << ", byte " << at;
+        } catch (const StoreError&) {
+          ++seen;
+        } catch (const std::bad_optional_access&) {
+          ++seen;  // a key rotted: it is not found
+        }
+      }
+    } catch (const StoreError&) {
+      ++seen;
+    }
+    for (const char* suffix : {"-wal", "-shm", ".lock"}) std::filesystem::remove(rotten + suffix);
+  }
+  EXPECT_GT(seen, 10);
 }
 
 TEST_F(MaintenanceTest, AnEarlierBackupBeforeAMigrationStays) {

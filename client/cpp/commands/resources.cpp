@@ -206,6 +206,7 @@ Command purge_command(const ResourceKind& kind) {
   command.run = [&kind, flags, purge](const CommonOptions& options) {
     Connection connection = options.connect();
     std::vector<std::string> remaining;
+    bool copies_remain = false;
     for (const std::string& name : flags->names) {
       const v1::PurgeReport report = kind.calls->purge(connection, kind.name_of(name), *purge);
       std::cout << (purge->validate_only ? "would erase " : "erased ") << printable(report.name())
@@ -213,6 +214,11 @@ Command purge_command(const ResourceKind& kind) {
                 << counted(report.simulations(), "job", "jobs") << ", "
                 << counted(report.results(), "result", "results") << "\n";
       remaining.assign(report.remaining_files().begin(), report.remaining_files().end());
+      copies_remain = copies_remain || report.copies_remain();
+    }
+    if (copies_remain) {
+      std::cerr << "Copies of the whole database beside it may still hold what was erased; a purge "
+                   "by an administrator of all projects names or removes them\n";
     }
     for (const std::string& file : remaining) {
       std::cerr << "A restore kept the former database beside the present one; it may still hold "

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 #include <openssl/crypto.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <charconv>
 #include <vector>
 
 #include "server/application/errors.h"
+#include "server/storage/store_error.h"
 #include "server/support/sha256.h"
 #include "server/support/text.h"
 #include "server/transport/http/rest_answer.h"
@@ -76,38 +78,43 @@ std::string scope_text(Scope scope) {
 
 }  // namespace
 
-SessionCookies::SessionCookies(const std::string& key, std::chrono::seconds lifetime)
-    : key_(hmac_sha256(key, "session cookies")),
+SessionCookies::SessionCookies(std::shared_ptr<SessionFile> sessions, std::chrono::seconds lifetime)
+    : sessions_(std::move(sessions)),
       lifetime_(std::chrono::duration_cast<std::chrono::microseconds>(lifetime).count()) {}
+
+std::string SessionCookies::sealed(const std::string& text) const {
+  return hmac_sha256(sessions_->key(), text);
+}
 
 std::string SessionCookies::issue(const std::string& token_hash, Microseconds now) const {
   const std::string text = token_hash + "." + std::to_string(now + lifetime_);
-  return text + "." + hmac_sha256(key_, text);
+  return text + "." + sealed(text);
 }
 
-std::optional<std::string> SessionCookies::token_hash_of(const std::string& cookie,
-                                                         Microseconds now) const {
+std::optional<SessionCookies::Session> SessionCookies::session_of(const std::string& cookie,
+                                                                  Microseconds now) const {
   const std::size_t dot = cookie.rfind('.');
   if (cookie.size() > kLongestCookie || dot == std::string::npos || dot <= kHashDigits + 1) {
     return std::nullopt;
   }
   const std::string text = cookie.substr(0, dot);
-  if (!is_equal(cookie.substr(dot + 1), hmac_sha256(key_, text))) return std::nullopt;
+  if (!is_equal(cookie.substr(dot + 1), sealed(text))) return std::nullopt;
   Microseconds end = 0;
   std::from_chars(text.data() + kHashDigits + 1, text.data() + text.size(), end);
-  if (now >= end) return std::nullopt;
-  return text.substr(0, kHashDigits);
+  if (now >= end || end > now + lifetime_) return std::nullopt;
+  if (sessions_->has_ended(sha256(cookie))) return std::nullopt;
+  return Session{text.substr(0, kHashDigits), end};
 }
 
 std::string SessionCookies::cookie_of(const HttpRequest& request, Microseconds now) const {
   for (const std::string& each : cookies(request, cookie_name(request))) {
-    if (token_hash_of(each, now)) return each;
+    if (session_of(each, now)) return each;
   }
   return {};
 }
 
 std::string SessionCookies::csrf_token(const std::string& cookie) const {
-  return hmac_sha256(key_, "csrf " + cookie);
+  return sealed("csrf " + cookie);
 }
 
 HttpResponse SessionCookies::description(const Grant& grant, const std::string& cookie) const {
@@ -128,6 +135,15 @@ HttpResponse SessionCookies::description(const Grant& grant, const std::string& 
 HttpResponse SessionCookies::answer(const Authorizer& authorizer, const HttpRequest& request,
                                     Microseconds now) const {
   if (request.verb == "DELETE") {
+    const std::string own = cookie_of(request, now);
+    if (const auto session = session_of(own, now)) {
+      try {
+        sessions_->end(sha256(own), session->end);
+      } catch (const StoreError& failure) {
+        spdlog::error("{}", failure.what());
+        return error_response(store_failed(failure));
+      }
+    }
     HttpResponse out;
     out.status = 204;
     out.headers["Set-Cookie"] = set_cookie(request, "");
@@ -164,7 +180,7 @@ std::optional<HttpResponse> SessionCookies::admit(HttpRequest& request, Microsec
         "a change within a session needs the header Tribodyn-Csrf with the csrf_token of "
         "GET /session");
   }
-  request.session_token_hash = *token_hash_of(cookie, now);
+  request.session_token_hash = session_of(cookie, now)->token_hash;
   return std::nullopt;
 }
 

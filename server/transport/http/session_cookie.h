@@ -1,25 +1,26 @@
 #pragma once
 
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "server/application/authorizer.h"
+#include "server/storage/session_file.h"
 #include "server/transport/http/http_message.h"
 
 namespace tribodyn::server {
 
 /// Sessions of browsers. A page sends a token once, and the server answers with a cookie that no
 /// script can read and no other site can send. The cookie holds the hash of the token and the end
-/// of the session under a seal: the server keeps nothing, sessions outlive its restarts, and they
-/// end with their token. A request that changes something also needs the header `Tribodyn-Csrf`,
-/// which only a page of the same origin can read: the cookie goes to every port of the host. Safe
-/// for concurrent access.
+/// of the session under a seal: sessions outlive restarts of the server, and end with their token,
+/// after their lifetime, at DELETE, and all of them when the key of the seal changes. A request
+/// that changes something also needs the header `Tribodyn-Csrf`, which only a page of the same
+/// origin can read: the cookie goes to every port of the host. Safe for concurrent access.
 class SessionCookies {
  public:
-  /// `key` seals the cookies; the holder of another key accepts none of them.
-  explicit SessionCookies(const std::string& key,
+  explicit SessionCookies(std::shared_ptr<SessionFile> sessions,
                           std::chrono::seconds lifetime = std::chrono::hours(12));
 
   /// The path of the session: POST with a token begins it, GET describes it, DELETE ends it.
@@ -37,14 +38,22 @@ class SessionCookies {
 
  private:
   std::string issue(const std::string& token_hash, Microseconds now) const;
-  /// Returns the hash of the token that a cookie stands for; nullopt if it is forged or expired.
-  std::optional<std::string> token_hash_of(const std::string& cookie, Microseconds now) const;
+  /// What a valid cookie stands for.
+  struct Session {
+    std::string token_hash;
+    Microseconds end = 0;
+  };
+  /// Returns nullopt if the cookie is forged, expired or ended.
+  std::optional<Session> session_of(const std::string& cookie, Microseconds now) const;
   /// Returns the valid cookie of a request, or "".
   std::string cookie_of(const HttpRequest& request, Microseconds now) const;
   std::string csrf_token(const std::string& cookie) const;
   HttpResponse description(const Grant& grant, const std::string& cookie) const;
 
-  const std::string key_;
+  /// Returns the seal of a text: of a cookie, or of what goes with it.
+  std::string sealed(const std::string& text) const;
+
+  const std::shared_ptr<SessionFile> sessions_;
   const Microseconds lifetime_;
 };
 
