@@ -27,6 +27,7 @@ struct Occupancy {
   std::size_t waiting = 0;
   std::size_t running = 0;
   double waiting_seconds = 0;  ///< sum of the estimates, in seconds of one processor
+  std::size_t parts = 0;       ///< of campaigns: beside the simulations, waiting or running
 };
 
 /// Measures the time since its construction.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace tribodyn::server {
 namespace {
@@ -293,7 +294,13 @@ void ClaimPolicy::requeue(std::int64_t id) {
 }
 
 Occupancy ClaimPolicy::occupancy() const {
-  return {queue_.size() + parked_.size(), running_.size(), queue_.cost_seconds()};
+  // Parts of campaigns have negative ids: they are the first of those that run.
+  const auto slices =
+      static_cast<std::size_t>(std::distance(running_.begin(), running_.lower_bound(0)));
+  return {.waiting = queue_.simulations() + parked_.size(),
+          .running = running_.size() - slices,
+          .waiting_seconds = queue_.simulation_seconds(),
+          .parts = queue_.size() - queue_.simulations() + slices};
 }
 
 }  // namespace tribodyn::server

@@ -22,6 +22,10 @@ void FairQueue::push(const QueuedJob& job) {
   principal.groups[group_of(job)].emplace(place, job);
   principal.cost_seconds += job.cost_seconds;
   cost_seconds_ += job.cost_seconds;
+  if (!campaign_part(job.id)) {
+    ++simulations_.size;
+    simulations_.cost_seconds += job.cost_seconds;
+  }
   places_[job.id] = {job.principal, place, group_of(job)};
   set_turns(found);
 }
@@ -92,6 +96,10 @@ void FairQueue::remove(Principals::iterator principal, const Place& place, std::
   const auto job = jobs.find(place);
   cost_seconds_ -= job->second.cost_seconds;
   principal->second.cost_seconds -= job->second.cost_seconds;
+  if (!campaign_part(job->second.id)) {
+    --simulations_.size;
+    simulations_.cost_seconds -= job->second.cost_seconds;
+  }
   places_.erase(job->second.id);
   jobs.erase(job);
   set_turns(principal);
@@ -99,7 +107,9 @@ void FairQueue::remove(Principals::iterator principal, const Place& place, std::
     remember(principal->first, principal->second.served_seconds);
     principals_.erase(principal);
   }
-  if (places_.empty()) cost_seconds_ = 0;  // removes the rounding errors
+  // Removes the rounding errors.
+  if (places_.empty()) cost_seconds_ = 0;
+  if (simulations_.size == 0) simulations_.cost_seconds = 0;
 }
 
 void FairQueue::charge(const std::string& principal, double seconds) {

@@ -87,6 +87,9 @@ class FairQueue {
 
   std::size_t size() const { return places_.size(); }
   double cost_seconds() const { return cost_seconds_; }
+  /// The same of simulations alone, without the parts of campaigns.
+  std::size_t simulations() const { return simulations_.size; }
+  double simulation_seconds() const { return simulations_.cost_seconds; }
   std::size_t size_of(const std::string& principal) const;
   double cost_seconds_of(const std::string& principal) const;
 
@@ -126,6 +129,10 @@ class FairQueue {
   std::map<std::int64_t, std::tuple<std::string, Place, std::size_t>> places_;
   std::array<std::set<Turn>, kUrgencies> turns_;  // by least urgency: which principal is next
   double cost_seconds_ = 0;
+  struct {
+    std::size_t size = 0;
+    double cost_seconds = 0;
+  } simulations_;
   double now_ = 0;  // virtual time: service of the principal of the latest job before that job
   std::int64_t arrivals_ = 0;
   std::map<std::string, double> debts_;  // served_seconds of those without jobs, beyond now_

@@ -605,10 +605,7 @@ TEST_F(CampaignTest, ACampaignThatKillsTheServerIsPaused) {
   limited.mutable_budget()->set_points(1);
   const std::string name = create(limited);
   ASSERT_TRUE(reaches(name, v1::Campaign::PAUSED));
-  ASSERT_TRUE(eventually([&] {
-    const Occupancy parts = bench_.jobs().scheduler().occupancy();
-    return parts.running + parts.waiting == 0;
-  }));
+  ASSERT_TRUE(eventually([&] { return bench_.jobs().scheduler().occupancy().parts == 0; }));
   const std::int64_t id = bench_.store().numbered_campaign("default", 1)->id;
   bench_.store().change_campaign({.id = id, .to = CampaignState::kRunning});
   for (int i = 0; i < 3; ++i) {  // as three processes that are lost
@@ -624,10 +621,7 @@ TEST_F(CampaignTest, RowsAtWhichAProcessIsLostAreHalvedDownToOneCandidate) {
   limited.mutable_budget()->set_points(1);
   create(limited);
   ASSERT_TRUE(reaches("campaigns/1", v1::Campaign::PAUSED));
-  ASSERT_TRUE(eventually([&] {
-    const Occupancy parts = bench_.jobs().scheduler().occupancy();
-    return parts.running + parts.waiting == 0;
-  }));
+  ASSERT_TRUE(eventually([&] { return bench_.jobs().scheduler().occupancy().parts == 0; }));
   Store& store = bench_.store();
   const std::int64_t id = store.numbered_campaign("default", 1)->id;
   const auto suspects = [&] {
@@ -685,10 +679,7 @@ TEST_F(CampaignTest, TheStoreTakesEachRowOnce) {
   limited.mutable_budget()->set_points(1);
   create(limited);
   ASSERT_TRUE(reaches("campaigns/1", v1::Campaign::PAUSED));
-  ASSERT_TRUE(eventually([&] {
-    const Occupancy parts = bench_.jobs().scheduler().occupancy();
-    return parts.running + parts.waiting == 0;
-  }));
+  ASSERT_TRUE(eventually([&] { return bench_.jobs().scheduler().occupancy().parts == 0; }));
   Store& store = bench_.store();
   const StoredCampaign campaign = *store.numbered_campaign("default", 1);
   NewTile tile;

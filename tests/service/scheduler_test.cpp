@@ -160,6 +160,20 @@ TEST(ClaimPolicy, KeepsAThreadForInteractiveJobs) {
   EXPECT_EQ(policy.occupancy().waiting, 4U);
 }
 
+TEST(ClaimPolicy, PartsOfCampaignsCountBesideTheSimulations) {
+  ClaimPolicy policy = policy_of(2);
+  for (const int part : {0, 1, 2}) policy.add({campaign_part_id(7, part), "a", 0.05});
+  policy.add({1, "a", 100});
+  policy.add({2, "a", 0.01});
+  EXPECT_EQ(begun(policy), 2);
+  EXPECT_LT(begun(policy), 0);
+  const Occupancy both = policy.occupancy();
+  EXPECT_EQ(both.waiting, 1U);
+  EXPECT_EQ(both.waiting_seconds, 100);
+  EXPECT_EQ(both.running, 1U);
+  EXPECT_EQ(both.parts, 3U);
+}
+
 TEST(ClaimPolicy, AJobThatMayKillTheServerRunsAlone) {
   ClaimPolicy policy = policy_of(4);
   policy.add({1, "", 0});
