@@ -93,11 +93,17 @@ std::string text_of(Scope scope) {
 class GrantedSource final : public AnyMessageSource {
  public:
   GrantedSource(ReplySource source, GrantPointer grant, std::shared_ptr<Authorizer> authorizer,
-                std::shared_ptr<void> place)
-      : place_(std::move(place)),
+                std::shared_ptr<void> place, std::shared_ptr<std::atomic<int>> open_streams)
+      : open_streams_(std::move(open_streams)),
+        place_(std::move(place)),
         source_(std::move(source)),
         grant_(std::move(grant)),
-        authorizer_(std::move(authorizer)) {}
+        authorizer_(std::move(authorizer)) {
+    ++*open_streams_;
+  }
+  ~GrantedSource() override { --*open_streams_; }
+  GrantedSource(const GrantedSource&) = delete;
+  GrantedSource& operator=(const GrantedSource&) = delete;
 
   void set_order(Order order) override { source_->set_order(order); }
 
@@ -119,6 +125,7 @@ class GrantedSource final : public AnyMessageSource {
   }
 
  private:
+  const std::shared_ptr<std::atomic<int>> open_streams_;
   const std::shared_ptr<void> place_;  // among the streams of the principal
   const ReplySource source_;
   const GrantPointer grant_;
@@ -139,7 +146,20 @@ bool is_short(const Method& method, const google::protobuf::Message& request) {
 }  // namespace
 
 CallDispatcher::CallDispatcher(Application& application, const TimeLimits& limits)
-    : application_(application), limits_(limits), methods_(method_table()) {}
+    : application_(application), limits_(limits), methods_(method_table()) {
+  const google::protobuf::EnumDescriptor& reasons = *v1::ErrorReason_descriptor();
+  for (int i = 0; i < reasons.value_count(); ++i) {
+    const auto reason = static_cast<v1::ErrorReason>(reasons.value(i)->number());
+    application.jobs.metrics().count_refusal(reason_text(reason), 0);
+  }
+}
+
+Workload CallDispatcher::workload() {
+  return {.simulations = application_.jobs.scheduler().occupancy(),
+          .campaigns = application_.jobs.campaigns().totals(),
+          .lanes = lanes_.occupancy(),
+          .open_streams = static_cast<std::size_t>(*open_streams_)};
+}
 
 /// Sets the grant of a call. Returns UNAUTHENTICATED, or PERMISSION_DENIED if the scope of the
 /// grant is too small. Reads nothing of the request and no row.
@@ -316,9 +336,9 @@ void CallDispatcher::open(StreamCall& call) {
           if (auto refused = take_project_stream(call.context, kept)) outcome = *std::move(refused);
         }
         if (outcome.ok()) {
-          outcome.message() =
-              std::make_shared<GrantedSource>(std::move(outcome.message()), call.context.grant,
-                                              application_.authorizer, std::move(kept));
+          outcome.message() = std::make_shared<GrantedSource>(
+              std::move(outcome.message()), call.context.grant, application_.authorizer,
+              std::move(kept), open_streams_);
         }
         kept = nullptr;  // its place is free before the answer
         finish(std::move(outcome));
@@ -338,11 +358,14 @@ void CallDispatcher::ended(const IncomingCall& call, const google::rpc::Status& 
   const google::protobuf::MethodDescriptor& method = *call.method.descriptor;
   const std::string& code = google::rpc::Code_Name(static_cast<google::rpc::Code>(status.code()));
   application_.jobs.metrics().count_call(method.full_name(), code, seconds);
+  const bool is_refused = status.code() != google::rpc::OK;
+  const std::string reason = is_refused ? reason_text(reason_of(status)) : "";
+  if (is_refused) application_.jobs.metrics().count_refusal(reason);
   const bool is_slow = seconds > kSlowSeconds && !method.server_streaming();
-  if (status.code() == google::rpc::OK && !is_slow) return;
+  if (!is_refused && !is_slow) return;
   spdlog::info(
       "event=call method={} code={} reason={} seconds={:.3f} client={} call={} principal={}",
-      method.name(), code, reason_of(status), seconds, call.context.client, call.context.request_id,
+      method.name(), code, reason, seconds, call.context.client, call.context.request_id,
       call.context.grant->principal);
 } catch (const std::exception&
              failure) {  // e.g. out of memory: the call is answered although it is not counted

@@ -84,6 +84,8 @@ class CallDispatcher {
   const std::vector<Method>& methods() const { return methods_; }
   const TimeLimits& limits() const { return limits_; }
   const Authorizer& authorizer() const { return *application_.authorizer; }
+  /// Returns what the server has to do now, for Metrics::text(). Reads no row.
+  Workload workload();
 
   void answer(UnaryCall& call);
   /// The stream ends with UNAUTHENTICATED as soon as the token of the call is no longer valid.
@@ -129,6 +131,8 @@ class CallDispatcher {
   Application& application_;
   const TimeLimits limits_;
   const std::vector<Method> methods_;
+  // Shared, because a stream may outlive the object.
+  const std::shared_ptr<std::atomic<int>> open_streams_ = std::make_shared<std::atomic<int>>(0);
   std::atomic<bool> runs_here_ = false;  // a transport's thread is in run_here()
   CallLanes lanes_;                      // last: its threads use all of the above
 };

@@ -2,10 +2,13 @@
 
 #include <cstddef>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "server/application/workers.h"
+#include "server/metrics/metrics.h"
 
 namespace tribodyn::server {
 
@@ -37,6 +40,16 @@ class CallLanes {
   }
   /// Returns true if no task of the lane waits.
   bool is_empty(CallLane lane) { return workers_[static_cast<std::size_t>(lane)].is_empty(); }
+  /// Returns the number of calls in each lane; streams count while a message of theirs is made.
+  std::vector<LaneOccupancy> occupancy() {
+    constexpr const char* kNames[] = {"read", "write", "search", "heavy", "compute", "stream"};
+    std::vector<LaneOccupancy> out;
+    for (std::size_t i = 0; i < std::size(kNames); ++i) {
+      const Workers::Load load = workers_[i].load();
+      out.push_back({kNames[i], load.waiting, load.running});
+    }
+    return out;
+  }
 
  private:
   static constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max() / 2;

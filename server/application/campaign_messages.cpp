@@ -57,7 +57,7 @@ std::optional<v1::CampaignStop> stall_of(CampaignJobs& campaigns, std::int64_t c
   if (!cause) return std::nullopt;
   const google::rpc::Status error = store_failed(*cause);
   v1::CampaignStop out;
-  out.set_reason(reason_of(error));
+  out.set_reason(reason_text(reason_of(error)));
   out.set_message(error.message() + "; the campaign continues by itself once it can be written");
   return out;
 }

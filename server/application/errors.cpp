@@ -15,6 +15,8 @@
 namespace tribodyn::server {
 namespace {
 
+constexpr std::string_view kReasonPrefix = "ERROR_REASON_";
+
 google::rpc::BadRequest bad_request(const Violations& violations) {
   google::rpc::BadRequest out;
   std::size_t bytes = 0;
@@ -80,16 +82,17 @@ google::rpc::Status resource_error(google::rpc::Code code, v1::ErrorReason reaso
 }  // namespace
 
 std::string reason_text(v1::ErrorReason reason) {
-  constexpr std::string_view kPrefix = "ERROR_REASON_";
-  return v1::ErrorReason_Name(reason).substr(kPrefix.size());
+  return v1::ErrorReason_Name(reason).substr(kReasonPrefix.size());
 }
 
-std::string reason_of(const google::rpc::Status& status) {
+v1::ErrorReason reason_of(const google::rpc::Status& status) {
   google::rpc::ErrorInfo info;
   for (const auto& detail : status.details()) {
     if (detail.UnpackTo(&info)) break;
   }
-  return info.reason();
+  v1::ErrorReason out = v1::ERROR_REASON_UNSPECIFIED;
+  v1::ErrorReason_Parse(std::string(kReasonPrefix) + info.reason(), &out);
+  return out;
 }
 
 google::rpc::Status error(google::rpc::Code code, v1::ErrorReason reason,

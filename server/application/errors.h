@@ -23,8 +23,8 @@ using ErrorMetadata = std::map<std::string, std::string>;
 
 /// Returns "NOT_FOUND" for ERROR_REASON_NOT_FOUND.
 std::string reason_text(v1::ErrorReason reason);
-/// Returns the reason that an error states; empty for OK.
-std::string reason_of(const google::rpc::Status& status);
+/// Returns the reason in the ErrorInfo of an error; UNSPECIFIED if it has none.
+v1::ErrorReason reason_of(const google::rpc::Status& status);
 
 // The functions below return errors. Each has an ErrorInfo with domain, reason and metadata.
 

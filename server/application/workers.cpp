@@ -28,11 +28,11 @@ bool Workers::run(std::size_t bytes, std::function<void()>& task, const std::str
     const std::lock_guard lock(mutex_);
     const auto found = tasks_.find(principal);
     const std::size_t own = found == tasks_.end() ? 0 : found->second.size();
-    const bool has_place = waiting_ < most_waiting_ ||
-                           (waiting_ < 2 * most_waiting_ && own < most_waiting_ / kShareOfOthers);
+    const bool has_place = load_.waiting < most_waiting_ || (load_.waiting < 2 * most_waiting_ &&
+                                                             own < most_waiting_ / kShareOfOthers);
     if (!has_place || bytes > most_bytes_ - bytes_) return false;
     bytes_ += bytes;
-    ++waiting_;
+    ++load_.waiting;
     std::deque<Task>& tasks = tasks_[principal];
     if (tasks.empty()) turns_.push_back(principal);
     tasks.push_back({bytes, std::move(task)});
@@ -41,9 +41,9 @@ bool Workers::run(std::size_t bytes, std::function<void()>& task, const std::str
   return true;
 }
 
-bool Workers::is_empty() {
+Workers::Load Workers::load() {
   const std::lock_guard lock(mutex_);
-  return waiting_ == 0;
+  return load_;
 }
 
 Workers::Task Workers::next() {
@@ -52,7 +52,7 @@ Workers::Task Workers::next() {
   const auto found = tasks_.find(principal);
   Task out = std::move(found->second.front());
   found->second.pop_front();
-  --waiting_;
+  --load_.waiting;
   if (found->second.empty()) {
     tasks_.erase(found);
   } else {
@@ -64,12 +64,14 @@ Workers::Task Workers::next() {
 void Workers::work() {
   std::unique_lock lock(mutex_);
   for (;;) {
-    changed_.wait(lock, [this] { return stopping_ || waiting_ > 0; });
-    if (waiting_ == 0) return;
+    changed_.wait(lock, [this] { return stopping_ || load_.waiting > 0; });
+    if (load_.waiting == 0) return;
     const Task task = next();
+    ++load_.running;
     lock.unlock();
     task.run();
     lock.lock();
+    --load_.running;
     bytes_ -= task.bytes;
   }
 }

@@ -28,7 +28,13 @@ class Workers {
   /// Queues a task. Returns false, and does not change `task`, if the queue is full.
   bool run(std::size_t bytes, std::function<void()>& task, const std::string& principal = {});
   /// Returns true if no task waits.
-  bool is_empty();
+  bool is_empty() { return load().waiting == 0; }
+  /// Number of tasks that wait, and that a thread runs.
+  struct Load {
+    std::size_t waiting = 0;
+    std::size_t running = 0;
+  };
+  Load load();
 
  private:
   struct Task {
@@ -45,7 +51,7 @@ class Workers {
   std::condition_variable changed_;
   std::map<std::string, std::deque<Task>> tasks_;  // guarded by mutex_; by principal, none empty
   std::deque<std::string> turns_;                  // guarded by mutex_; the keys of tasks_
-  std::size_t waiting_ = 0;                        // guarded by mutex_
+  Load load_;                                      // guarded by mutex_
   std::size_t bytes_ = 0;                          // guarded by mutex_; of tasks that wait or run
   bool stopping_ = false;                          // guarded by mutex_
   std::vector<std::thread> threads_;

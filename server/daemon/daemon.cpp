@@ -152,6 +152,8 @@ int complain(int code, const std::string& sentence) {
   return code;
 }
 
+std::string audit_file(const Settings& settings) { return settings.database + ".audit"; }
+
 /// The REST interface and the HTTP servers that carry it, one for each address.
 struct Rest {
   RestHandler handler;
@@ -180,11 +182,12 @@ std::function<HttpResponse(const HttpRequest&)> health_page(const GrpcServer& se
 }
 
 /// The page /metrics.
-std::function<HttpResponse(const HttpRequest&)> metrics_page(SimulationJobs& jobs) {
-  return [&jobs](const HttpRequest&) {
+std::function<HttpResponse(const HttpRequest&)> metrics_page(CallDispatcher& dispatcher,
+                                                             const Metrics& metrics) {
+  return [&](const HttpRequest&) {
     HttpResponse out;
     out.headers["Content-Type"] = "text/plain; version=0.0.4; charset=utf-8";
-    out.body = jobs.metrics().text(jobs.scheduler().occupancy());
+    out.body = metrics.text(dispatcher.workload());
     return out;
   };
 }
@@ -216,9 +219,15 @@ std::unique_ptr<Rest> listen_for_http(const Settings& settings, CallDispatcher& 
                                       SimulationJobs& jobs, const GrpcServer& server,
                                       Microseconds now) {
   if (settings.http_listen.empty()) return nullptr;
-  jobs.metrics().set_build(TRIBODYN_VERSION, kModelVersion, platform());
+  Metrics& metrics = jobs.metrics();
+  metrics.set_build(TRIBODYN_VERSION, kModelVersion, platform());
+  const std::string database = canonical_path(settings.database).string();
+  metrics.set_files({{"database", database},
+                     {"write_ahead_log", database + "-wal"},
+                     {"audit", audit_file(settings)},
+                     {"log", "/proc/self/fd/2"}});
   std::map<std::string, RestHandler::Page> pages = description_pages(dispatcher.methods());
-  pages["/metrics"] = {metrics_page(jobs)};
+  pages["/metrics"] = {metrics_page(dispatcher, metrics)};
   pages["/healthz"] = {health_page(server), true};
   const RestDashboard dashboard{
       std::make_shared<SessionCookies>(std::make_shared<SessionFile>(settings.database, now)),
@@ -256,8 +265,7 @@ int serve(const Settings& settings, const std::vector<ListenAddress>& addresses,
   for (const std::string& each : settings.projects) store.add_project(each, seeds, system_time());
   const SimulationJobs::Options options = job_options(settings);
   SimulationJobs jobs(store, options);
-  Application application{
-      .store = store, .jobs = jobs, .audit = AuditLog(settings.database + ".audit")};
+  Application application{.store = store, .jobs = jobs, .audit = AuditLog(audit_file(settings))};
   application.project_bytes = static_cast<std::int64_t>(1e6 * settings.project_megabytes);
   application.project_quotas = std::make_shared<ProjectQuotas>(
       Quota{settings.project_calls_per_second, settings.project_streams,

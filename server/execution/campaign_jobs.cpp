@@ -18,9 +18,11 @@ constexpr double kShareOfPrincipal = 0.75;
 
 }  // namespace
 
-CampaignJobs::CampaignJobs(Store& store, Scheduler& scheduler, int threads, Clock clock)
+CampaignJobs::CampaignJobs(Store& store, Scheduler& scheduler, Metrics& metrics, int threads,
+                           Clock clock)
     : store_(store),
       scheduler_(scheduler),
+      metrics_(metrics),
       threads_(std::clamp(threads, 1, kMostCampaignParts)),
       clock_(std::move(clock)) {}
 
@@ -35,6 +37,7 @@ CampaignJobs::RunningPointer CampaignJobs::find(std::int64_t id) {
 std::size_t CampaignJobs::resume() {
   const std::lock_guard control(control_mutex_);
   std::size_t count = 0;
+  for (const std::int64_t id : store_.paused_campaigns()) note_state(id, CampaignState::kPaused);
   for (const std::int64_t id : store_.resume_campaigns()) {
     if (const auto stored = store_.campaign(id)) {
       activate(*stored);
@@ -57,7 +60,6 @@ void CampaignJobs::activate(const StoredCampaign& campaign,
     // Before the entry can be seen: who finds it halted and idle removes it.
     const std::lock_guard inner(running->mutex);
     running->is_halted = false;
-    running->stalled.reset();
     running->submitted = std::move(inputs);
   }
   start_parts(*running);
@@ -111,10 +113,21 @@ void CampaignJobs::halt(std::int64_t id) {
   forget_if_idle(id);
 }
 
+/// Keeps account of a campaign whose state may have changed. Requires control_mutex_.
+void CampaignJobs::note_state(std::int64_t id, CampaignState state) {
+  const std::lock_guard lock(mutex_);
+  if (state == CampaignState::kPaused) {
+    paused_.insert(id);
+  } else {
+    paused_.erase(id);
+  }
+}
+
 /// Brings what runs into line with the stored state.
 void CampaignJobs::settle(std::int64_t id) {
   const std::lock_guard control(control_mutex_);
   const auto stored = store_.campaign(id);
+  if (stored) note_state(id, stored->state);
   if (!stored || stored->state != CampaignState::kRunning) halt(id);
 }
 
@@ -138,7 +151,7 @@ void CampaignJobs::forget_if_idle(std::int64_t id) {
 std::optional<StoreError> CampaignJobs::stalled(std::int64_t id) {
   const RunningPointer running = find(id);
   if (!running) return std::nullopt;
-  const std::lock_guard lock(running->mutex);
+  const std::lock_guard lock(running->stall_mutex);
   return running->is_halted ? std::nullopt : running->stalled;
 }
 
@@ -147,6 +160,20 @@ double CampaignJobs::unfinished_seconds(const std::string& principal) const {
   const std::lock_guard lock(mutex_);
   for (const auto& [id, running] : running_) {
     if (running->principal == principal) out += running->remaining_seconds();
+  }
+  return out;
+}
+
+CampaignTotals CampaignJobs::totals() const {
+  CampaignTotals out;
+  const std::lock_guard lock(mutex_);
+  out.paused = paused_.size();
+  for (const auto& [id, running] : running_) {
+    if (running->is_halted) continue;
+    ++out.running;
+    if (running->is_stalled) ++out.stalled;
+    out.points_left += running->remaining_points();
+    out.seconds_left += running->remaining_seconds();
   }
   return out;
 }
@@ -246,6 +273,11 @@ std::optional<StoredCampaign> CampaignJobs::change(CampaignChange change,
   change.lost_attempts = is_loaded ? 1 : 0;  // this process has begun it
   auto changed = store_.change_campaign(change, limits);
   if (!changed) return store_.campaign(change.id);
+  note_state(change.id, changed->state);
+  if (has_ended(changed->state)) {
+    metrics_.count(changed->state == CampaignState::kFailed ? CampaignOutcome::kFailed
+                                                            : CampaignOutcome::kCancelled);
+  }
   if (changed->state != CampaignState::kRunning) {
     halt(change.id);
     return changed;

@@ -7,8 +7,10 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 
+#include "server/metrics/metrics.h"
 #include "server/scheduling/scheduler.h"
 #include "server/simulation/campaign_columns.h"
 #include "server/simulation/campaign_inputs.h"
@@ -28,8 +30,8 @@ namespace tribodyn::server {
 /// access without external synchronization; `resume` and `finish` from one thread.
 class CampaignJobs {
  public:
-  /// Store and scheduler must outlive the object.
-  CampaignJobs(Store& store, Scheduler& scheduler, int threads, Clock clock);
+  /// Store, scheduler and metrics must outlive the object.
+  CampaignJobs(Store& store, Scheduler& scheduler, Metrics& metrics, int threads, Clock clock);
   ~CampaignJobs();
   CampaignJobs(const CampaignJobs&) = delete;
   CampaignJobs& operator=(const CampaignJobs&) = delete;
@@ -50,6 +52,8 @@ class CampaignJobs {
   /// Returns why the campaign cannot continue until the store can be read and written again;
   /// nullopt if it can. Store::campaign_changes() counts changes of this too.
   std::optional<StoreError> stalled(std::int64_t id);
+  /// Counts the campaigns that have not ended. Reads no row.
+  CampaignTotals totals() const;
   /// Queues a campaign that is RUNNING in the store, if it is not queued: a commit may succeed
   /// although its writer sees an error.
   void ensure_queued(const StoredCampaign& campaign);
@@ -92,6 +96,7 @@ class CampaignJobs {
                 std::shared_ptr<const CampaignInputs> inputs = nullptr);
   void halt(std::int64_t id);
   void settle(std::int64_t id);
+  void note_state(std::int64_t id, CampaignState state);
   std::optional<StoredCampaign> change(CampaignChange change, const CallLimits& limits);
   void start_parts(Running& running);
   bool may_take_care(const Running& running, const Part& part) const;
@@ -113,12 +118,14 @@ class CampaignJobs {
 
   Store& store_;
   Scheduler& scheduler_;
+  Metrics& metrics_;
   const int threads_;
   const Clock clock_;
   std::atomic<std::int64_t> careful_campaign_ = 0;  // the one that is computed with care; 0: none
   std::mutex control_mutex_;  // of changes of states, with what follows from them in memory
   mutable std::mutex mutex_;
   std::map<std::int64_t, RunningPointer> running_;  // guarded by mutex_
+  std::set<std::int64_t> paused_;                   // guarded by mutex_
 };
 
 }  // namespace tribodyn::server

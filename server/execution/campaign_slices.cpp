@@ -151,11 +151,12 @@ void CampaignJobs::run_slice(const Lease& lease, PreparedGearSets& gear_sets,
 /// Sets why rows cannot be written; nullopt: they can. Tells those who watch if that changed.
 void CampaignJobs::set_stalled(Running& running, const std::optional<StoreError>& cause) {
   {
-    const std::lock_guard lock(running.mutex);
+    const std::lock_guard lock(running.stall_mutex);
     const bool has_changed = running.stalled.has_value() != cause.has_value() ||
                              (cause && running.stalled->kind() != cause->kind());
     if (!has_changed) return;
     running.stalled = cause;
+    running.is_stalled = cause.has_value();
   }
   store_.tell_campaign_change();
 }
@@ -163,11 +164,15 @@ void CampaignJobs::set_stalled(Running& running, const std::optional<StoreError>
 /// Computes for about Scheduler::kSliceSeconds. Returns true if there may be more to do. Throws
 /// Refusal or StoreError; then the tile stays as it is.
 bool CampaignJobs::compute_slice(Running& running, Part& part, PreparedGearSets& gear_sets) {
-  {
+  const bool is_loaded = [&] {
     const std::lock_guard lock(running.mutex);
     if (!running.inputs && !running.is_halted) load(running);
-    if (!running.inputs) return false;
-    if (!part.inputs) use_inputs(part, running.inputs);
+    if (running.inputs && !part.inputs) use_inputs(part, running.inputs);
+    return running.inputs != nullptr;
+  }();
+  if (!is_loaded) {
+    settle(running.id);  // its beginning may have paused it
+    return false;
   }
   std::shared_ptr<PreparedGearSet> gear_set;
   const auto give_back = [&] {
@@ -175,10 +180,7 @@ bool CampaignJobs::compute_slice(Running& running, Part& part, PreparedGearSets&
     part.candidate->give_back(gear_sets, std::move(gear_set));
   };
   for (;;) {
-    const bool is_halted = [&] {
-      const std::lock_guard lock(running.mutex);
-      return running.is_halted;
-    }();
+    const bool is_halted = running.is_halted;
     if (part.tile && (part.tile->is_full() || is_halted || !part.goes_on())) write(running, part);
     if (is_halted || !part.goes_on()) break;
     if (!part.tile) {
@@ -363,6 +365,7 @@ void CampaignJobs::write(Running& running, Part& part) {
       throw;
     }
   }
+  if (stored) metrics_.count_tile(tile.done * conditions - tile.refused, tile.refused);
   if (tile.done == 0 && tile.is_noted) store_.end_suspects(running.id);
   if (tile.done > 0) set_stalled(running, std::nullopt);
   return_rows(running, tile);
@@ -372,7 +375,8 @@ void CampaignJobs::write(Running& running, Part& part) {
   {
     const std::lock_guard lock(running.mutex);
     if (was_written) ++running.tiles_written;
-    if (stored) running.points_done = stored->points_done;
+    // Another part may have written a later tile meanwhile.
+    if (stored) running.points_done = std::max(running.points_done.load(), stored->points_done);
     has_ended_care =
         running.is_careful && running.suspects.empty() && running.tiles_written > kTilesOfHealth;
     if (has_ended_care) running.is_careful = false;
@@ -383,6 +387,7 @@ void CampaignJobs::write(Running& running, Part& part) {
   }
   if (was_written && (!stored || stored->state != CampaignState::kRunning)) settle(running.id);
   if (stored && stored->state == CampaignState::kSucceeded) {
+    metrics_.count(CampaignOutcome::kSucceeded);
     spdlog::info("event=campaign_computed campaign={} points={} processor_seconds={:.3f}",
                  running.name, stored->points(), stored->processor_seconds);
   }

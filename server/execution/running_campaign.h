@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -70,27 +72,33 @@ struct CampaignJobs::Running {
   const std::string principal;
   std::size_t bytes;  // of its request and candidates at least; guarded by CampaignJobs::mutex_
 
+  // Changed under mutex and read without it, which load() holds while it reads the store.
+  std::atomic<std::int64_t> points;
+  std::atomic<double> cost_seconds;  // estimate of all points, of one processor
+  std::atomic<std::int64_t> points_done;
+  std::mutex stall_mutex;                // `mutex` is locked while the campaign is read
+  std::optional<StoreError> stalled;     // why its rows cannot be written; guarded by stall_mutex
+  std::atomic<bool> is_stalled = false;  // the same, for a quick look
+  std::atomic<bool> is_halted = false;   // no further row is to be computed
+
   std::mutex mutex;
-  std::int64_t points;  // guarded by mutex, as all below
-  double cost_seconds;  // estimate of all points, of one processor
-  std::int64_t points_done;
+  // Guarded by mutex, as all below.
   std::int64_t candidates = 0;                      // those that are missing or in tiles
-  bool is_halted = false;                           // no further row is to be computed
   std::shared_ptr<const CampaignInputs> inputs;     // null before the first slice
   std::shared_ptr<const CampaignInputs> submitted;  // of the request; null after the first slice
   std::deque<RowRange> missing;                     // candidates that no part has taken
   std::deque<CampaignSuspect> suspects;             // the same that come first, one at a time
   bool is_careful = false;                          // part 0 alone computes
-  std::optional<StoreError> stalled;                // why its rows cannot be written
   std::size_t tiles_taken = 0;
   int tiles_written = 0;
   std::map<std::pair<std::string, std::string>, int> refusal_numbers;  // by reason and message
   std::deque<Part> parts;
 
-  double remaining_seconds() {
-    const std::lock_guard lock(mutex);
-    if (is_halted) return 0;
-    return cost_seconds * static_cast<double>(points - points_done) / static_cast<double>(points);
+  std::int64_t remaining_points() const {
+    return is_halted ? 0 : std::max<std::int64_t>(0, points - points_done);
+  }
+  double remaining_seconds() const {
+    return cost_seconds * static_cast<double>(remaining_points()) / static_cast<double>(points);
   }
 };
 

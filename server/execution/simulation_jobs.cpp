@@ -31,7 +31,7 @@ SimulationJobs::SimulationJobs(Store& store, Options options)
       retention_(options.retention),
       janitor_(store, retention_, options.clock),
       scheduler_(store, board_, metrics_, scheduler_options(options)),
-      campaigns_(store, scheduler_, options.threads, options.clock),
+      campaigns_(store, scheduler_, metrics_, options.threads, options.clock),
       executor_(scheduler_, campaigns_, metrics_, options.threads, std::move(options.studies)) {}
 
 SimulationJobs::~SimulationJobs() { stop(); }

@@ -174,6 +174,13 @@ Page<StoredCampaign> query_campaigns(Connection& db, const CampaignQuery& wanted
   return out;
 }
 
+std::vector<std::int64_t> query_paused_campaigns(Connection& db) {
+  Prepared query(db, "SELECT id FROM campaigns WHERE state = ?", CampaignState::kPaused);
+  std::vector<std::int64_t> out;
+  while (query.executeStep()) out.push_back(query.getColumn(0).getInt64());
+  return out;
+}
+
 bool describe_campaign(Connection& db, const StoredCampaign& present, const std::string& request,
                        const CampaignLabels& labels,
                        const std::optional<std::string>& candidate_table) {

@@ -33,6 +33,8 @@ struct CampaignQuery {
 /// Returns the campaigns that satisfy the query, the latest first, and the number of those over all
 /// pages.
 Page<StoredCampaign> query_campaigns(Connection& db, const CampaignQuery& query);
+/// Returns the rows of all campaigns that are PAUSED.
+std::vector<std::int64_t> query_paused_campaigns(Connection& db);
 /// As Store::describe_campaign(); returns false if it changes nothing.
 bool describe_campaign(Connection& db, const StoredCampaign& present, const std::string& request,
                        const CampaignLabels& labels,

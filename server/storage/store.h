@@ -237,6 +237,7 @@ class Store {
                                                          const CallLimits& limits = {});
   int created_candidates(std::int64_t id, const CallLimits& limits = {});
   std::vector<std::int64_t> resume_campaigns();
+  std::vector<std::int64_t> paused_campaigns();
   std::string candidate_table(std::int64_t id, const CallLimits& limits = {});
   std::optional<StoredCampaign> change_campaign(const CampaignChange& change,
                                                 const CallLimits& limits = {});

@@ -77,6 +77,10 @@ std::vector<std::int64_t> Store::resume_campaigns() {
   return out;
 }
 
+std::vector<std::int64_t> Store::paused_campaigns() {
+  return read({}, [](Connection& db) { return query_paused_campaigns(db); });
+}
+
 std::string Store::candidate_table(std::int64_t id, const CallLimits& limits) {
   return read(limits, [&](Connection& db) { return query_candidate_table(db, id); });
 }

@@ -168,6 +168,8 @@ TEST_F(CallDispatcherTest, CountsACallByMethodAndCodeAndLogsOnlyWhatFails) {
   EXPECT_THAT(metrics(), HasSubstr("tribodyn_calls_total{code=\"OK\"," + method + "} 1\n"));
   EXPECT_THAT(metrics(), HasSubstr("tribodyn_calls_total{code=\"NOT_FOUND\"," + method + "} 1\n"));
   EXPECT_THAT(metrics(), HasSubstr("tribodyn_call_seconds_count{" + method + "} 2\n"));
+  EXPECT_THAT(metrics(), HasSubstr("tribodyn_refusals_total{reason=\"NOT_FOUND\"} 1\n"));
+  EXPECT_THAT(metrics(), HasSubstr("tribodyn_refusals_total{reason=\"QUOTA_EXCEEDED\"} 0\n"));
 }
 
 TEST_F(CallDispatcherTest, ACallIsRefusedByItsSizeAndByItsDeadlineBeforeItIsRead) {
@@ -366,6 +368,14 @@ TEST_F(CallDispatcherTest, ACallToAFullLaneIsToldTheLimitAndWhatToDo) {
   EXPECT_EQ(small.message(),
             "no more than 10000 calls of this kind may wait; try again in 2 s, or send fewer calls "
             "at a time");
+  EXPECT_TRUE(eventually([&] {
+    const auto lanes = dispatcher_.workload().lanes;
+    const LaneOccupancy& read = lanes[static_cast<std::size_t>(CallLane::kRead)];
+    const LaneOccupancy& large = lanes[static_cast<std::size_t>(CallLane::kHeavy)];
+    return read.lane == "read" && read.running == 4 && large.lane == "heavy" &&
+           large.running == 2 && read.waiting + large.waiting == calls.size() - 6;
+  }));
+  EXPECT_THAT(metrics(), HasSubstr("tribodyn_refusals_total{reason=\"TOO_MANY_CALLS\"} 1\n"));
   release.set_value();
   for (TestCall& each : calls) EXPECT_EQ(each.wait().code(), google::rpc::OK);
   EXPECT_THAT(log_.text(), HasSubstr("reason=TOO_MANY_CALLS"));

@@ -418,6 +418,76 @@ TEST_F(CampaignTest, RefusedRowsHaveAReasonAndDoNotStopIt) {
   EXPECT_EQ(numbers.size(), 101U) << "a hundred sentences, and one for all others";
 }
 
+TEST_F(CampaignTest, MetricsCountItsPointsItsTilesAndItsEnd) {
+  v1::Campaign campaign = campaign_of(kThousand);
+  v1::CandidateColumn& vogel = *campaign.mutable_candidate_columns(1);
+  vogel.set_path("lubricant.vogel_reference_temperature_kelvin");
+  for (int i = 0; i < kThousand; ++i) vogel.set_values(i, i % 10 == 0 ? 390 : 150);
+  create(campaign);
+  const std::string cancelled = create(campaign_of(10 * kThousand));
+  ASSERT_TRUE(call<v1::CancelCampaignRequest>(cancel_campaign, cancelled).ok());
+  ASSERT_TRUE(reaches("campaigns/1", v1::Campaign::SUCCEEDED));
+  ASSERT_TRUE(eventually([&] { return bench_.jobs().scheduler().occupancy().parts == 0; }));
+  const StoredCampaign done = *bench_.store().numbered_campaign("default", 1);
+  const StoredCampaign partly = *bench_.store().numbered_campaign("default", 2);
+  ASSERT_EQ(done.points_refused, 6 * kThousand / 10);
+  const std::int64_t refused = done.points_refused + partly.points_refused;
+  const auto tiles = bench_.store().campaign_tiles(done.id).size() +
+                     bench_.store().campaign_tiles(partly.id).size();
+  const std::string text = bench_.jobs().metrics().text({});
+  const auto line = [](const std::string& name, auto value) {
+    return HasSubstr("\n" + name + " " + std::to_string(value) + "\n");
+  };
+  EXPECT_THAT(text, line("tribodyn_campaign_points_total{outcome=\"computed\"}",
+                         done.points_done + partly.points_done - refused));
+  EXPECT_THAT(text, line("tribodyn_campaign_points_total{outcome=\"refused\"}", refused));
+  EXPECT_THAT(text, line("tribodyn_campaign_tiles_total", tiles));
+  EXPECT_THAT(text, line("tribodyn_campaigns_ended_total{outcome=\"succeeded\"}", 1));
+  EXPECT_THAT(text, line("tribodyn_campaigns_ended_total{outcome=\"cancelled\"}", 1));
+  EXPECT_THAT(text, line("tribodyn_campaigns_ended_total{outcome=\"failed\"}", 0));
+}
+
+TEST_F(CampaignTest, TotalsAreOfTheCampaignsThatRunOrArePausedAlsoAfterARestart) {
+  const auto totals = [&] { return bench_.jobs().campaigns().totals(); };
+  const std::string name = create(campaign_of(3 * kThousand));
+  const CampaignTotals all = totals();
+  EXPECT_EQ(all.running, 1U);
+  EXPECT_GT(all.points_left, 0);
+  EXPECT_LE(all.points_left, 18 * kThousand);
+  EXPECT_GT(all.seconds_left, 0);
+  ASSERT_TRUE(call<v1::PauseCampaignRequest>(pause_campaign, name).ok());
+  bench_.restart(quick_studies());
+  const CampaignTotals paused = totals();
+  EXPECT_EQ(paused.paused, 1U);
+  EXPECT_EQ(paused.running, 0U);
+  EXPECT_EQ(paused.points_left, 0) << "nothing is to be computed";
+  v1::ResumeCampaignRequest small_budget;
+  small_budget.mutable_budget()->set_points(get(name).points_done() + 1);
+  ASSERT_TRUE(call(resume_campaign, name, small_budget).ok());
+  ASSERT_TRUE(reaches(name, v1::Campaign::PAUSED));
+  EXPECT_TRUE(eventually([&] { return totals().paused == 1; })) << "its budget is spent";
+  v1::ResumeCampaignRequest no_budget;
+  no_budget.mutable_budget();
+  ASSERT_TRUE(call(resume_campaign, name, no_budget).ok());
+  EXPECT_EQ(totals().paused, 0U);
+  ASSERT_TRUE(reaches(name, v1::Campaign::SUCCEEDED));
+  EXPECT_TRUE(eventually([&] { return totals().running == 0; }));
+  EXPECT_EQ(totals().seconds_left, 0);
+}
+
+TEST_F(CampaignTest, TotalsHaveACampaignThatPausesAtItsBeginning) {
+  const std::string name = create(campaign_of(3 * kThousand));
+  ASSERT_TRUE(call<v1::PauseCampaignRequest>(pause_campaign, name).ok());
+  ASSERT_TRUE(eventually([&] { return bench_.jobs().scheduler().occupancy().parts == 0; }));
+  const std::int64_t id = bench_.store().numbered_campaign("default", 1)->id;
+  bench_.store().change_campaign({.id = id, .to = CampaignState::kRunning});
+  for (int i = 0; i < 3; ++i) bench_.store().begin_campaign(id);  // as processes that are lost
+  bench_.restart(quick_studies());
+  ASSERT_TRUE(reaches(name, v1::Campaign::PAUSED));
+  EXPECT_TRUE(eventually([&] { return bench_.jobs().campaigns().totals().paused == 1; }));
+  EXPECT_EQ(bench_.jobs().campaigns().totals().running, 0U);
+}
+
 TEST_F(CampaignTest, ARequestIdMakesOneCampaign) {
   const std::string name = create(campaign_of(10), "one");
   EXPECT_EQ(create(campaign_of(10), "one"), name);

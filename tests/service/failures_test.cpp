@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "google/rpc/code.pb.h"
-#include "google/rpc/error_details.pb.h"
+#include "server/application/errors.h"
 #include "server/application/guard.h"
 #include "server/application/log_text.h"
 #include "server/application/message_source.h"
@@ -27,12 +27,6 @@ google::rpc::Status failure_of(const std::function<void()>& body) {
     return v1::Simulation();
   });
   return outcome.ok() ? google::rpc::Status() : outcome.error();
-}
-
-std::string reason_of(const google::rpc::Status& status) {
-  google::rpc::ErrorInfo info;
-  for (const auto& detail : status.details()) detail.UnpackTo(&info);
-  return info.reason();
 }
 
 /// Returns the word between `before` and `after`.
@@ -59,7 +53,7 @@ TEST(Failures, AThrownValueOfAnyTypeIsHandled) {
 TEST(Failures, LackOfMemoryIsNotADefect) {
   const google::rpc::Status told = failure_of([] { throw std::bad_alloc(); });
   EXPECT_EQ(told.code(), google::rpc::RESOURCE_EXHAUSTED);
-  EXPECT_EQ(reason_of(told), "OUT_OF_MEMORY");
+  EXPECT_EQ(reason_of(told), v1::ERROR_REASON_OUT_OF_MEMORY);
 }
 
 /// A stream that fails at its second message.

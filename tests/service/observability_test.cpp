@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <ctime>
 #include <filesystem>
 #include <string>
 #include <thread>
@@ -97,6 +98,39 @@ TEST_F(ObservabilityTest, MetricsCountPhasesOutcomesCacheHitsAndTheBuild) {
   EXPECT_THAT(text, HasSubstr("tribodyn_simulations_waiting 0\n"));
   EXPECT_THAT(text, HasSubstr("tribodyn_build_info{"));
   EXPECT_THAT(http_get(port_, "/other"), HasSubstr("404"));
+}
+
+TEST_F(ObservabilityTest, MetricsTellWhatTheProcessAndItsFilesTake) {
+  const std::string text = http_get(port_, "/metrics");
+  const auto value = [&](const std::string& name) {
+    const auto found = text.find("\n" + name + " ");
+    if (found == std::string::npos) return -1.0;
+    return std::stod(text.substr(found + name.size() + 2));
+  };
+  EXPECT_GT(value("process_cpu_seconds_total"), 0);
+  EXPECT_GT(value("process_resident_memory_bytes"), 1e6);
+  EXPECT_GT(value("process_open_fds"), 3);
+  EXPECT_GT(value("process_max_fds"), value("process_open_fds"));
+  EXPECT_GT(value("process_threads"), 2);
+  EXPECT_NEAR(value("process_start_time_seconds"), static_cast<double>(std::time(nullptr)), 60);
+  EXPECT_GT(value("tribodyn_disk_free_bytes"), 0);
+  EXPECT_GE(value("tribodyn_disk_size_bytes"), value("tribodyn_disk_free_bytes"));
+  const auto size = [&](const std::string& file) {
+    return value("tribodyn_file_bytes{file=\"" + file + "\"}");
+  };
+  EXPECT_EQ(size("database"),
+            static_cast<double>(std::filesystem::file_size(folder_.file("tribodyn.db"))));
+  EXPECT_GT(size("write_ahead_log"), 0);
+  EXPECT_GT(size("log"), 0);
+}
+
+TEST_F(ObservabilityTest, MetricsAreThereWhileTheDatabaseIsMisplaced) {
+  const std::string database = folder_.file("tribodyn.db");
+  std::filesystem::rename(database, database + ".elsewhere");
+  const std::string text = http_get(port_, "/metrics");
+  EXPECT_THAT(text, HasSubstr("tribodyn_disk_free_bytes "));
+  EXPECT_THAT(text, Not(HasSubstr("file=\"database\"")));
+  std::filesystem::rename(database + ".elsewhere", database);
 }
 
 TEST_F(ObservabilityTest, HealthIsUnavailableWhileTheDatabaseIsMisplacedOrTheServerDrains) {

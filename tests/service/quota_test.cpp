@@ -166,6 +166,8 @@ TEST_F(QuotaTest, CallsBeyondTheRateAreRefusedWithTheRateAndADelayAndOthersAreNo
   EXPECT_EQ(quota_of(refused), "calls-per-second");
   EXPECT_THAT(refused.message(),
               AllOf(HasSubstr("the quota of slow is 0.2 calls a second"), HasSubstr("try again")));
+  EXPECT_THAT(bench_.jobs().metrics().text({}),
+              HasSubstr("tribodyn_refusals_total{reason=\"QUOTA_EXCEEDED\"} 1\n"));
   for (int i = 0; i < 20; ++i) {
     EXPECT_NE(answer(small(), "usual").code(), google::rpc::RESOURCE_EXHAUSTED);
     EXPECT_NE(answer(small(), "owner").code(), google::rpc::RESOURCE_EXHAUSTED);
@@ -186,7 +188,9 @@ TEST_F(QuotaTest, StreamsBeyondTheQuotaAreRefusedUntilOneEnds) {
   EXPECT_EQ(quota_of(refused), "streams");
   EXPECT_THAT(refused.message(), HasSubstr("the quota of usual is 2 open streams"));
   for (QuotaCall& each : owners) EXPECT_EQ(each.answer(dispatcher_).code(), google::rpc::OK);
+  EXPECT_EQ(dispatcher_.workload().open_streams, 5U);
   first.source = nullptr;
+  EXPECT_EQ(dispatcher_.workload().open_streams, 4U);
   EXPECT_EQ(fourth.answer(dispatcher_).code(), google::rpc::OK);
 }
 
