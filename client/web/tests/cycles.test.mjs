@@ -60,10 +60,10 @@ test('the NEDC is added up for fluids, with both errors, over time and by its pa
   const command = await page.getByLabel('Command line').textContent();
   const printed = JSON.parse(await output(TRIBODYN, ['--server', `unix:${server.folder}/socket`, ...command.split(' ').slice(1), '-o', 'json']));
   assert.equal(printed.lubricants[1].loss_joules, answer.lubricants[1].loss_joules);
-  assert.deepEqual(page.complaints, []);
 });
 
 test('a dropped cycle is added up, and its mistakes are named at their lines, whoever finds them', async () => {
+  page.expect(400, 'cycles:evaluate');
   await page.goto(`${server.address}/cycles?f=paper-fluid-1&cycle=own`);
   await page.getByRole('heading', { name: 'Drop a cycle' }).waitFor();
   const drop = (text) => page.locator('.drop input').setInputFiles(file(text));
@@ -93,10 +93,10 @@ test('a dropped cycle is added up, and its mistakes are named at their lines, wh
   await page.getByRole('button', { name: 'Show the whole cycle' }).click();
   await page.getByLabel('NEDC').check();
   await page.getByText('11.03 km in 1180 s').waitFor();
-  assert.deepEqual(page.complaints, []);
 });
 
 test('a link reproduces the cycle that was dropped, and a cycle that is too long for a link goes with its file', async () => {
+  page.expect(400, 'cycles:evaluate'); // no measurement after the shear test
   const rows = Array.from({ length: 1800 }, (_, k) => [k, Number((30 - 30 * Math.cos((2 * Math.PI * k) / 600)).toFixed(1))]);
   await page.goto(`${server.address}/cycles?f=paper-fluid-1&cycle=own`);
   await page.locator('.drop input').setInputFiles(file(`time;v [km/h]\n${rows.map((row) => row.join(';').replaceAll('.', ',')).join('\n')}\n`));
@@ -131,7 +131,6 @@ test('a link reproduces the cycle that was dropped, and a cycle that is too long
   await other.goto(`${server.address}/more`);
   await other.goto(`${link.slice(0, -40)}`);
   await other.getByText('The link is damaged').waitFor();
-  assert.deepEqual(other.complaints, []);
   await other.context().close();
   // Digits that no pattern makes shorter.
   const digits = rows.map(([time, speed], k) => `${time},${Number((speed + ((k * 7919 * 7919) % 1e9) / 1e11).toFixed(12))}`);
@@ -141,15 +140,14 @@ test('a link reproduces the cycle that was dropped, and a cycle that is too long
   const [long] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'its file' }).click()]);
   assert.equal(long.suggestedFilename(), 'my cycle.csv');
   assert.deepEqual(readFileSync(await long.path(), 'utf8').trim().split('\n').slice(1), digits);
-  assert.deepEqual(page.complaints, []);
 });
 
 test('a sump that the service refuses is named at its field', async () => {
+  page.expect(400, 'cycles:evaluate');
   await page.goto(`${server.address}/cycles?f=paper-fluid-1`);
   await total().waitFor();
   await page.getByLabel('Sump, °C').fill('400');
   await page.getByLabel('Sump, °C').press('Tab');
   await page.locator('.panel .problem', { hasText: 'allowed: -70 to 200' }).waitFor();
   assert.equal(await page.getByLabel('Sump, °C').getAttribute('aria-invalid'), 'true');
-  assert.deepEqual(page.complaints, []);
 });

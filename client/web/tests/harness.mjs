@@ -1,8 +1,10 @@
 // A real server and Debian's Chromium for the tests of the dashboard.
+import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
+import { afterEach } from 'node:test';
 import { chromium } from 'playwright-core';
 
 export const TRIBODYND = process.env.TRIBODYND;
@@ -34,7 +36,7 @@ export class Server {
   /** Starts it on a free port, after a stop on the same one. */
   async start() {
     const args = ['--database', this.database, '--listen', `unix:${this.folder}/socket`, '--http-listen',
-      `127.0.0.1:${this.port}`, '--threads', '1', ...this.flags];
+      `127.0.0.1:${this.port}`, '--threads', '1', '--dashboard', path.resolve('dist'), ...this.flags];
     this.log = '';
     this.process = spawn(TRIBODYND, args, { stdio: ['ignore', 'pipe', 'pipe'] });
     for (const stream of [this.process.stdout, this.process.stderr]) stream.on('data', (text) => (this.log += text));
@@ -98,16 +100,37 @@ export async function launch() {
   return chromium.launch({ executablePath, args: process.getuid() === 0 ? ['--no-sandbox'] : [] });
 }
 
+/** Pages of the scenario, which ends with a complaint of any of them. */
+const pages = new Set();
+afterEach(() => {
+  const complaints = [...pages].flatMap((page) => [...page.complaints, ...page.expected.filter((each) => !each.hasCome).map((each) => `no answer ${each.status} of ${each.target}`)]);
+  for (const page of pages) {
+    page.complaints.length = 0;
+    page.expected = [];
+    if (page.isClosed()) pages.delete(page);
+  }
+  assert.deepEqual(complaints, []);
+});
+
 /**
- * A browser without cookies that has a page. Requests that leave the server, errors of scripts and
- * violations of the content security policy are recorded in `complaints`, numbers of the service's
- * answers in `answered`.
+ * A browser without cookies that has a page. A scenario fails if the page sends a request elsewhere, has an
+ * error in a script, violates its content security policy, or gets an answer of 400 or above that the scenario
+ * does not expect: `page.expect(404, 'lubricants/no-such-oil')`. Numbers of the service's answers are recorded
+ * in `answered`.
  */
 export async function newPage(browser, server, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, locale: 'en-GB', ...options });
+  return newTab(context, server);
+}
+
+/** A further page of a browser. */
+export async function newTab(context, server) {
   const page = await context.newPage();
   page.setDefaultTimeout(20_000);
+  pages.add(page);
   page.complaints = [];
+  page.expected = [];
+  page.expect = (status, target) => page.expected.push({ status, target, hasCome: false });
   page.on('pageerror', (error) => page.complaints.push(`error: ${error.message}`));
   page.on('console', (message) => {
     if (/Content Security Policy|Trusted/i.test(message.text())) page.complaints.push(message.text());
@@ -116,7 +139,14 @@ export async function newPage(browser, server, options = {}) {
   page.reading = [];
   page.on('domcontentloaded', () => (page.reading = []));
   page.on('response', (response) => {
-    if (!/\/v1\//.test(response.url()) || !/json/.test(response.headers()['content-type'] ?? '')) return;
+    const [status, method, url] = [response.status(), response.request().method(), response.url()];
+    // A page learns by a 401 that nobody has signed in.
+    if (status >= 400 && !(status === 401 && method === 'GET' && url === `${server.address}/session`)) {
+      const found = page.expected.filter((each) => each.status === status && url.includes(each.target));
+      for (const each of found) each.hasCome = true;
+      if (found.length === 0) page.complaints.push(`${method} ${url}: ${status}`);
+    }
+    if (!/\/v1\//.test(url) || !/json/.test(response.headers()['content-type'] ?? '')) return;
     page.reading.push(response.json().then((body) => numbersOf(body, page.answered), () => {}));
   });
   page.on('request', (request) => {

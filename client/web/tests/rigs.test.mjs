@@ -64,6 +64,7 @@ test('the warnings of a rig stand with the places that they hold for', async () 
 });
 
 test('a mistake in the setting of a rig is named at its field', async () => {
+  page.expect(400, 'rigs:evaluate');
   await page.goto(`${server.address}/rigs?kind=stribeck&f=paper-fluid-1&load=-5`);
   await page.locator('.panel .problem', { hasText: 'load_newtons' }).waitFor();
   assert.equal(await page.getByLabel('Load, N').getAttribute('aria-invalid'), 'true');
@@ -76,7 +77,6 @@ test('a figure of the paper opens as its curves, or as its rig', async () => {
   await page.goto(`${server.address}/paper`);
   await page.getByRole('link', { name: /Traction of the three lubricants/ }).click();
   await page.getByText('A ball of 19.1 mm on steel, smooth; 35.2 N; 2.5 m/s').waitFor();
-  assert.deepEqual(page.complaints, []);
 });
 
 test('speeds of curves are those of the pinion if the reader wants so, and addresses stay the same', async () => {
@@ -107,13 +107,14 @@ test('units are chosen in one place for every view, and a form reads what it sho
   });
   await page.goto(`${server.address}/curves?r=${curve.name.split('/')[1]}&y=temperature`);
   await page.locator('.read-out tbody tr').waitFor();
+  await page.getByText('holds the curve with 95').waitFor(); // the interval decides the digits
   const cell = page.locator('[data-column="maximum_contact_temperature_kelvin"]');
   const celsius = Number(await cell.textContent());
   await page.getByText('Units', { exact: true }).click();
   await page.getByLabel('Unit: Temperature').selectOption('K');
   await page.getByLabel('Unit: Film, transmission error').selectOption('nm');
   await page.getByRole('heading', { name: 'Hottest contact over the mesh cycle, K' }).waitFor();
-  assert.ok(Math.abs(Number(await cell.textContent()) - celsius - 273.15) < 0.1);
+  assert.ok(Math.abs(Number(await cell.textContent()) - celsius - 273.15) < 1);
   assert.equal(await page.getByLabel('Sump, K').inputValue(), '363.15');
   assert.deepEqual(await foreignNumbers(page), []);
   await page.getByText('Units', { exact: true }).click();
@@ -126,5 +127,4 @@ test('units are chosen in one place for every view, and a form reads what it sho
   await page.goto(`${server.address}/compare?a=paper-fluid-1&b=paper-fluid-2&y=dte-least`);
   await page.getByText('Least transmission error, nm; bands hold').waitFor();
   assert.equal(await page.getByLabel('Sump, K').inputValue(), '313.15');
-  assert.deepEqual(page.complaints, []);
 });

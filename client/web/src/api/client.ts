@@ -98,10 +98,11 @@ async function waitForServer(): Promise<void> {
   }
 }
 
-/** Reads the session of this browser's cookie. */
+/** Reads the session of this browser's cookie. One that is as before stays: views that follow it do not load again. */
 export async function readSession(): Promise<void> {
   try {
-    session.set(await (await send('/session', {})).json());
+    const found: Session = await (await send('/session', {})).json();
+    if (JSON.stringify(found) !== JSON.stringify(session.value)) session.set(found);
   } catch (error) {
     if ((error as ApiError).status === 401) session.set(null);
     else throw error;

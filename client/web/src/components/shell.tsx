@@ -84,12 +84,12 @@ export function Shell() {
       if (awaySince.value === null && session.value === undefined) void readSession();
     }));
   }, []);
+  const isForeign = who && who.projects.length > 0 && !who.projects.includes(project);
   useEffect(() => {
-    if (who && who.projects.length > 0 && !who.projects.includes(project)) {
-      const first = who.projects[0]!;
-      go(first === 'default' ? '/' : `/p/${first}/`, 'replace');
-    }
-  }, [who, project]);
+    if (!isForeign) return;
+    const first = who.projects[0]!;
+    go(first === 'default' ? '/' : `/p/${first}/`, 'replace');
+  }, [isForeign]);
   const current = (link: string) => (link === '/' ? path === '/' : path.startsWith(link));
   return (
     <div onClick={follow}>
@@ -110,7 +110,7 @@ export function Shell() {
         </Notice>
       )}
       <main id="content" tabIndex={-1} key={project}>
-        {who === undefined ? <p class="muted">Loading …</p>
+        {who === undefined || isForeign ? <p class="muted">Loading …</p>
           : View === 'missing' ? <Missing />
           : View === 'loading' ? <p class="muted">Loading …</p>
           : hasBegun ? <View /> : null}
