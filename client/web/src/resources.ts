@@ -1,5 +1,5 @@
 import { useEffect, useState } from 'preact/hooks';
-import { change, get, session, url } from './api/client';
+import { change, get, isPassing, returns, session, url } from './api/client';
 import type { GearSet, ListGearSetsResponse, ListLubricantsResponse, Lubricant, Schema } from './api/types';
 import { idOf } from './format';
 import { useStore } from './store';
@@ -11,20 +11,27 @@ export interface Loaded<T> {
   reload: () => void;
 }
 
-/** Loads something when the view appears, when `key` changes and after the reader has signed in. */
+/** Changes whenever views load again: after a sign-in, and once a server that was away is back. null: nobody has signed in. */
+export function useConnection(): string | null {
+  const who = useStore(session);
+  const count = useStore(returns);
+  return who ? `${who.csrf_token} ${count}` : null;
+}
+
+/** Loads something when the view appears, when `key` changes and whenever the connection is new. What was loaded stays meanwhile. */
 export function useLoaded<T>(load: (signal: AbortSignal) => Promise<T>, key: string): Loaded<T> {
   const [state, setState] = useState<{ key?: string; value?: T; error?: unknown }>({});
   const [round, setRound] = useState(0);
-  const who = useStore(session);
+  const connection = useConnection();
   useEffect(() => {
-    if (!who) return;
+    if (connection === null) return;
     const controller = new AbortController();
     load(controller.signal).then(
       (value) => setState({ key, value }),
-      (error) => { if (!controller.signal.aborted) setState((old) => ({ ...(old.key === key ? old : {}), key, error })); },
+      (error) => { if (!controller.signal.aborted && !isPassing(error)) setState((old) => ({ ...(old.key === key ? old : {}), key, error })); },
     );
     return () => controller.abort();
-  }, [key, round, who]);
+  }, [key, round, connection]);
   return { ...(state.key === key ? state : { value: state.value }), isStale: state.key !== key, reload: () => setRound((count) => count + 1) } as Loaded<T>;
 }
 

@@ -24,6 +24,11 @@ export class Store<T> {
 
 export function useStore<T>(store: Store<T>): T {
   const [, redraw] = useState(0);
-  useEffect(() => store.subscribe(() => redraw((count) => count + 1)), [store]);
-  return store.value;
+  const { value } = store;
+  useEffect(() => {
+    const follow = () => redraw((count) => count + 1);
+    if (!Object.is(store.value, value)) follow(); // it changed before it was followed
+    return store.subscribe(follow);
+  }, [store]);
+  return value;
 }

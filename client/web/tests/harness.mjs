@@ -140,8 +140,9 @@ export async function newTab(context, server) {
   page.on('domcontentloaded', () => (page.reading = []));
   page.on('response', (response) => {
     const [status, method, url] = [response.status(), response.request().method(), response.url()];
-    // A page learns by a 401 that nobody has signed in.
-    if (status >= 400 && !(status === 401 && method === 'GET' && url === `${server.address}/session`)) {
+    // A page learns by a 401 that nobody has signed in, and by a 503 that a server is about to be back.
+    const isQuestion = method === 'GET' && [`401 ${server.address}/session`, `503 ${server.address}/healthz`].includes(`${status} ${url}`);
+    if (status >= 400 && !isQuestion) {
       const found = page.expected.filter((each) => each.status === status && url.includes(each.target));
       for (const each of found) each.hasCome = true;
       if (found.length === 0) page.complaints.push(`${method} ${url}: ${status}`);

@@ -34,6 +34,11 @@ export interface Session {
 export const session = new Store<Session | null | undefined>(undefined);
 /** Time of the last answer if the server does not answer any more, else null. */
 export const awaySince = new Store<Date | null>(null);
+/** How often the server was away and came back. */
+export const returns = new Store(0);
+
+/** Whether views load again by themselves after an error: once somebody has signed in, or once the server is back. */
+export const isPassing = (error: unknown): boolean => error instanceof ApiError && (error.status === 401 || error.status === 0);
 
 let lastAnswer = new Date();
 
@@ -78,7 +83,7 @@ async function sendOnce(path: string, init: RequestInit): Promise<Response> {
       awaySince.set(lastAnswer);
       void waitForServer();
     }
-    throw new ApiError(0, 'SERVER_AWAY', 'the server does not answer');
+    throw new ApiError(0, 'SERVER_AWAY', 'the server did not answer');
   }
   lastAnswer = new Date();
   if (response.ok) return response;
@@ -91,10 +96,12 @@ async function waitForServer(): Promise<void> {
   while (awaySince.value !== null) {
     await new Promise((done) => setTimeout(done, 1000));
     try {
-      if ((await fetch('/healthz')).ok) awaySince.set(null);
+      if (!(await fetch('/healthz')).ok) continue;
     } catch {
-      // The next round asks again.
+      continue;
     }
+    awaySince.set(null);
+    returns.set(returns.value + 1);
   }
 }
 

@@ -8,7 +8,7 @@ export function Notice({ kind, children }: { kind: 'caution' | 'error' | 'ok'; c
 /** A refusal in words: what, and what to do. */
 export function Failure({ error, onRetry }: { error: unknown; onRetry?: () => void }) {
   const refusal = error instanceof ApiError ? error : null;
-  if (refusal?.status === 401 || refusal?.status === 0) return null; // the shell says so
+  if (refusal?.status === 401) return null; // the shell says so
   return (
     <Notice kind="error">
       <p>{(error as Error).message}</p>

@@ -1,6 +1,6 @@
 import type { ComponentType } from 'preact';
 import { useEffect, useState } from 'preact/hooks';
-import { awaySince, readSession, session, signOut } from '../api/client';
+import { awaySince, isPassing, readSession, returns, session, signOut } from '../api/client';
 import { theme, type Theme } from '../charts/theme';
 import { address, follow, go, place } from '../router';
 import { useStore } from '../store';
@@ -8,7 +8,7 @@ import { units } from '../units';
 import { Home } from '../views/home';
 import { Keys } from './keys';
 import { Missing } from './missing';
-import { Notice } from './notice';
+import { Failure, Notice } from './notice';
 import { SignIn } from './sign_in';
 import { UnitChoices } from './unit_choices';
 
@@ -33,14 +33,33 @@ const VIEWS: Record<string, () => Promise<ComponentType>> = {
   rigs: async () => (await import('../views/rigs')).Rigs,
 };
 
-function useView(path: string): ComponentType | 'loading' | 'missing' {
+const RELOADED = 'reloaded'; // in the storage of the tab: the page was loaded again for a view
+
+/** Loads a view. Where its file is gone, as after an upgrade of the server, the page loads again, once. */
+async function loadView(load: () => Promise<ComponentType>): Promise<ComponentType | 'loading' | 'failed'> {
+  try {
+    const view = await load();
+    sessionStorage.removeItem(RELOADED);
+    return view;
+  } catch {
+    await readSession(); // fails while the server is away
+    if (sessionStorage.getItem(RELOADED)) return 'failed';
+    sessionStorage.setItem(RELOADED, 'yes');
+    window.location.reload();
+    return 'loading';
+  }
+}
+
+function useView(path: string): ComponentType | 'loading' | 'missing' | 'failed' {
   const word = path.split('/')[1] ?? '';
-  const [views, setViews] = useState<Record<string, ComponentType>>({ '': Home });
+  const count = useStore(returns);
+  const [views, setViews] = useState<Record<string, ComponentType | 'loading' | 'failed'>>({ '': Home });
   useEffect(() => {
     const load = VIEWS[word];
-    if (!load || views[word]) return;
-    void load().then((view) => setViews((all) => ({ ...all, [word]: view })));
-  }, [word]);
+    if (!load || typeof views[word] === 'function') return;
+    // It is loaded again once the server is back.
+    loadView(load).then((view) => setViews((all) => ({ ...all, [word]: view })), () => undefined);
+  }, [word, count]);
   return views[word] ?? (VIEWS[word] ? 'loading' : 'missing');
 }
 
@@ -79,11 +98,11 @@ export function Shell() {
   // A session that ends leaves the page as it is: the dialog lies over it.
   const [hasBegun, setBegun] = useState(false);
   if (who && !hasBegun) setBegun(true);
+  const count = useStore(returns);
+  const [problem, setProblem] = useState<unknown>();
   useEffect(() => {
-    readSession().catch(() => awaySince.subscribe(() => {
-      if (awaySince.value === null && session.value === undefined) void readSession();
-    }));
-  }, []);
+    readSession().then(() => setProblem(undefined), setProblem);
+  }, [count]);
   const isForeign = who && who.projects.length > 0 && !who.projects.includes(project);
   useEffect(() => {
     if (!isForeign) return;
@@ -106,12 +125,19 @@ export function Shell() {
       </header>
       {away && (
         <Notice kind="caution">
-          Not connected since {away.toLocaleTimeString()}. The page shows what was loaded, and connects again by itself.
+          <span data-away>Not connected since {away.toLocaleTimeString()}. The page shows what was loaded, and connects again by itself.</span>
         </Notice>
       )}
       <main id="content" tabIndex={-1} key={project}>
-        {who === undefined || isForeign ? <p class="muted">Loading …</p>
+        {who === undefined && problem !== undefined && !isPassing(problem) ? <Failure error={problem} onRetry={() => window.location.reload()} />
+          : who === undefined || isForeign ? <p class="muted">Loading …</p>
           : View === 'missing' ? <Missing />
+          : View === 'failed' ? (
+            <Notice kind="error">
+              <p>The server does not have this view.</p>
+              <button onClick={() => window.location.reload()}>Load the page again</button>
+            </Notice>
+          )
           : View === 'loading' ? <p class="muted">Loading …</p>
           : hasBegun ? <View /> : null}
       </main>

@@ -1,5 +1,5 @@
 import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
-import { ApiError, change, session, url } from '../api/client';
+import { ApiError, change, isPassing, session, url } from '../api/client';
 import { watch } from '../api/events';
 import type { Simulation, SimulationEvent } from '../api/types';
 import { CurveChart } from '../charts/curve_chart';
@@ -16,7 +16,7 @@ import { QUANTITIES, quantityOf } from '../quantities';
 import { levelOf } from '../validity';
 import { bodiesOf, DEFAULTS, inputsOf, queryOf, requestOf, requestOfSimulations, type CurveRequest } from '../request';
 import { studyOf } from '../histories';
-import { titlesOf, useGearSets, useLubricants } from '../resources';
+import { titlesOf, useConnection, useGearSets, useLubricants } from '../resources';
 import { address, go, place, set } from '../router';
 import { Store, useStore } from '../store';
 import { shown, units, watts } from '../units';
@@ -40,10 +40,10 @@ interface Job {
 /** Reads simulations by id and follows those that have not ended. */
 function useJobs(ids: string[]): { jobs: Job[]; error: unknown } {
   const key = ids.join(',');
-  const who = useStore(session);
+  const connection = useConnection();
   const [state, setState] = useState<{ key: string; jobs: Job[]; error: unknown }>({ key: '', jobs: [], error: null });
   useEffect(() => {
-    if (!who) return;
+    if (connection === null) return;
     let isCurrent = true;
     let stream: { close: () => void } | undefined;
     const update = (name: string, next: (job: Job) => Job) => {
@@ -54,7 +54,7 @@ function useJobs(ids: string[]): { jobs: Job[]; error: unknown } {
       const curve = await readCurve(name);
       update(name, (job) => ({ ...job, curve, simulation: curve.simulation }));
     };
-    const fail = (error: unknown) => isCurrent && setState((old) => ({ ...old, key, error }));
+    const fail = (error: unknown) => isCurrent && !isPassing(error) && setState((old) => ({ ...old, key, error }));
     const onEvent = (event: SimulationEvent) => {
       if (!event.state || event.kind === 'HEARTBEAT') return;
       update(event.name!, (job) => ({
@@ -78,7 +78,7 @@ function useJobs(ids: string[]): { jobs: Job[]; error: unknown } {
       isCurrent = false;
       stream?.close();
     };
-  }, [key, who]);
+  }, [key, connection]);
   return state;
 }
 

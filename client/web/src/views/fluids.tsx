@@ -213,7 +213,8 @@ const base64 = (text: string): string =>
   btoa(Array.from(new TextEncoder().encode(text), (byte) => String.fromCharCode(byte)).join(''));
 
 /** Enters an oil, from its data sheet or from a table of viscosities, or changes one. */
-function FluidForm({ lubricant }: { lubricant?: Lubricant }) {
+function FluidForm({ lubricant: given }: { lubricant?: Lubricant }) {
+  const [lubricant] = useState(given); // a change by somebody else meanwhile is a conflict
   const schema = useSchema();
   const constraints = schema.value?.constraints;
   const [typedId, setId] = useState<string | null>(null);

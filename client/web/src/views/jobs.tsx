@@ -1,5 +1,5 @@
 import { useEffect, useState } from 'preact/hooks';
-import { change, get, session, url } from '../api/client';
+import { change, get, isPassing, session, url } from '../api/client';
 import { watch } from '../api/events';
 import type { Assumption, ListSimulationsResponse, Simulation } from '../api/types';
 import { JobState } from '../components/job_state';
@@ -13,7 +13,7 @@ import { ago, duration, idOf, revisionIdOf } from '../format';
 import { filterOfLabel, hasLabel } from '../labels';
 import { PROVENANCE } from '../provenance';
 import { inputsOf } from '../request';
-import { titlesOf, useLoaded, useLubricants } from '../resources';
+import { titlesOf, useConnection, useLoaded, useLubricants } from '../resources';
 import { address, go, place, set } from '../router';
 import { useStore } from '../store';
 import { sumpText } from '../units';
@@ -25,17 +25,18 @@ const ENDED = ['SUCCEEDED', 'FAILED', 'CANCELLED'];
 
 /** The newest jobs in a state and with a label, followed while they are shown. */
 function useJobList(state: string, label: string | null): { jobs: Simulation[] | undefined; error: unknown; reload: () => void } {
-  const who = useStore(session);
+  const connection = useConnection();
   const [jobs, setJobs] = useState<Simulation[] | undefined>();
   const [error, setError] = useState<unknown>();
   const [round, setRound] = useState(0);
   useEffect(() => {
-    if (!who) return;
+    if (connection === null) return;
     let isCurrent = true;
     let stream: { close: () => void } | undefined;
     const filter = [state && `state = ${state}`, filterOfLabel(label)].filter(Boolean).join(' AND ') || undefined;
     const isListed = (job: Simulation) => (state === '' || job.state === state) && (!label || hasLabel(job.labels, label));
     const load = () => get<ListSimulationsResponse>(url('simulations', { page_size: PAGE, filter, read_mask: INPUT_FIELDS }));
+    const fail = (problem: unknown) => isCurrent && !isPassing(problem) && setError(problem);
     load().then((page) => {
       if (!isCurrent) return;
       setJobs(page.simulations ?? []);
@@ -47,7 +48,7 @@ function useJobList(state: string, label: string | null): { jobs: Simulation[] |
           if (event.kind === 'DELETED') return old.filter((each) => each.name !== event.name);
           if (!old.some((each) => each.name === event.name)) {
             void readSimulation(event.name!).then((simulation) =>
-              setJobs((now) => (now && !now.some((each) => each.name === simulation.name) && isListed(simulation) ? [simulation, ...now] : now)));
+              setJobs((now) => (now && !now.some((each) => each.name === simulation.name) && isListed(simulation) ? [simulation, ...now] : now)), fail);
             return old;
           }
           return old.map((each) => (each.name !== event.name ? each : {
@@ -56,13 +57,13 @@ function useJobList(state: string, label: string | null): { jobs: Simulation[] |
             ...(event.time && ENDED.includes(event.state!) ? { end_time: event.time } : {}),
           }));
         });
-      }, () => void load().then((again) => isCurrent && setJobs(again.simulations ?? [])));
-    }, (problem) => isCurrent && setError(problem));
+      }, () => void load().then((again) => isCurrent && setJobs(again.simulations ?? []), fail));
+    }, fail);
     return () => {
       isCurrent = false;
       stream?.close();
     };
-  }, [state, label, who, round]);
+  }, [state, label, connection, round]);
   return { jobs, error, reload: () => setRound((count) => count + 1) };
 }
 

@@ -1,4 +1,4 @@
-import { useEffect, useMemo, useState } from 'preact/hooks';
+import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
 import { ApiError, change, get, session, url } from '../api/client';
 import { watch } from '../api/events';
 import type { GearSet, PointResult, RangeWarning, ReadSpectrumResponse, Simulation } from '../api/types';
@@ -20,7 +20,7 @@ import { INPUT_FIELDS, readSimulation, shortTitle } from '../curve';
 import { ERROR, MESH_CYCLES, PHASE, studyOf, VELOCITY } from '../histories';
 import { idOf, revisionIdOf, rounded } from '../format';
 import { kelvin, metres, pascals, plain, scaled, shown, sumpText, units, watts, type Unit } from '../units';
-import { titlesOf, useLoaded, useLubricants } from '../resources';
+import { titlesOf, useLoaded, useLubricants, type Loaded } from '../resources';
 import { inputsOf } from '../request';
 import { address, go, place, set } from '../router';
 import { useStore } from '../store';
@@ -206,11 +206,15 @@ function PhasePortrait({ job, halfBacklash, phase }: { job: Simulation; halfBack
 const MOST_ORDER = 20;
 const LISTED_ORDERS = 10;
 
+/** The histories of one line that a job has kept. */
+const singlePanels = (job: Simulation): Panel[] =>
+  PANELS.filter(({ lines }) => lines.length === 1 && job.result?.history_columns?.includes(lines[0]!.column));
+
 /** Amplitudes of a history over multiples of the mesh frequency. */
 function Spectrum({ job }: { job: Simulation }) {
   const { query } = useStore(place);
   const inUnits = useStore(units);
-  const panels = PANELS.filter((each) => each.lines.length === 1);
+  const panels = singlePanels(job);
   const panel = panels.find((each) => each.lines[0]!.column === query.get('o')) ?? panels[0]!;
   const { column } = panel.lines[0]!;
   const answer = useLoaded((signal) => get<ReadSpectrumResponse>(url(`${job.name}:readSpectrum`, { columns: [column], maximum_order: MOST_ORDER }), signal), `spectrum ${job.name} ${column}`);
@@ -267,27 +271,18 @@ function Figures({ result, inputs }: { result: PointResult; inputs: RangeWarning
 }
 
 /** Rows of a history between two mesh phases, refetched when the reader zooms. */
-function useHistory(name: string, rows: number, zoom: [number, number] | null): { history?: History; error: unknown } {
-  const who = useStore(session);
-  const [history, setHistory] = useState<History | undefined>();
-  const [error, setError] = useState<unknown>(null);
-  useEffect(() => {
-    if (!who) return;
-    const controller = new AbortController();
-    const perCycle = rows / MESH_CYCLES;
-    const start = zoom ? Math.max(0, Math.floor(zoom[0] * perCycle) - 1) : 0;
-    const count = zoom ? Math.min(rows - start, Math.ceil((zoom[1] - zoom[0]) * perCycle) + 3) : rows;
-    const points = Math.max(400, 2 * Math.min(900, window.innerWidth));
-    const timer = setTimeout(() => {
-      get<History>(url(`${name}:readHistory`, { alt: 'columns', start_row: start, row_count: count, max_points: points }), controller.signal)
-        .then(setHistory, (problem) => { if (!controller.signal.aborted) setError(problem); });
-    }, history ? ZOOM_DELAY_MILLISECONDS : 0);
-    return () => {
-      clearTimeout(timer);
-      controller.abort();
-    };
-  }, [name, rows, zoom?.[0], zoom?.[1], who]);
-  return { history, error };
+function useHistory(name: string, rows: number, zoom: [number, number] | null): Loaded<History> {
+  const perCycle = rows / MESH_CYCLES;
+  const start = zoom ? Math.max(0, Math.floor(zoom[0] * perCycle) - 1) : 0;
+  const count = zoom ? Math.min(rows - start, Math.ceil((zoom[1] - zoom[0]) * perCycle) + 3) : rows;
+  const points = Math.max(400, 2 * Math.min(900, window.innerWidth));
+  const isFirst = useRef(true);
+  return useLoaded(async (signal) => {
+    // The end of a zoom is fetched, and not its way there.
+    if (!isFirst.current) await new Promise((done) => setTimeout(done, ZOOM_DELAY_MILLISECONDS));
+    isFirst.current = false;
+    return get<History>(url(`${name}:readHistory`, { alt: 'columns', start_row: start, row_count: count, max_points: points }), signal);
+  }, `history ${name} ${start} ${count}`);
 }
 
 function lineOf(history: History, panel: Panel, label: string, column: string, series: number): Line {
@@ -314,7 +309,7 @@ function Histories({ job, result }: { job: Simulation; result: PointResult }) {
     const [from, to] = (query.get('t') ?? '').split('-').map(Number);
     return from !== undefined && to !== undefined && to > from ? [from, to] : null;
   }, [query.get('t')]);
-  const { history, error } = useHistory(job.name!, Number(job.result!.history_rows), zoom);
+  const { value: history, error, reload } = useHistory(job.name!, Number(job.result!.history_rows), zoom);
   const gearSet = useLoaded((signal) => get<GearSet>(url(job.gear_set_revision!, { read_mask: 'dynamics.half_backlash_metres' }), signal), job.gear_set_revision!);
   const halfBacklash = gearSet.value?.dynamics?.half_backlash_metres;
   const specs = useMemo(() => {
@@ -335,7 +330,7 @@ function Histories({ job, result }: { job: Simulation; result: PointResult }) {
   }, [history, zoom, halfBacklash, inUnits]);
   const onZoom = (range: [number, number] | null) =>
     set({ t: range ? range.map((each) => Math.min(MESH_CYCLES, Math.max(0, each)).toFixed(4)).join('-') : undefined });
-  if (error !== null) return <Failure error={error} />;
+  if (error !== undefined) return <Failure error={error} onRetry={reload} />;
   if (!history) return <p class="muted">Loading the histories …</p>;
   return (
     <section aria-label="Time histories">
@@ -360,7 +355,7 @@ function Histories({ job, result }: { job: Simulation; result: PointResult }) {
       <p class="axis-title">Mesh cycles</p>
       <div class="pair">
         {(job.result?.history_columns ?? []).includes(VELOCITY) && <PhasePortrait job={job} halfBacklash={halfBacklash} phase={phase} />}
-        <Spectrum job={job} />
+        {singlePanels(job).length > 0 && <Spectrum job={job} />}
       </div>
     </section>
   );

@@ -30,18 +30,18 @@ export function Rigs() {
   const stated = rigRequestOf(query);
   const usualFluids = (lubricants.value ?? []).map((each) => idOf(each.name)).filter((id) => id.startsWith('paper-fluid-'));
   const request = { ...stated, fluids: stated.fluids.length > 0 ? stated.fluids : usualFluids };
-  const rig = RIGS[request.kind];
   const calls = callsOf(request);
-  const answers = useLoaded((signal) => Promise.all(calls.map(async (call) =>
-    ({ call, answer: await change<EvaluateRigResponse>('POST', url('rigs:evaluate'), call.body, signal) }))), JSON.stringify(calls));
+  const answers = useLoaded(async (signal) => ({ request, given: await Promise.all(calls.map(async (call) =>
+    ({ call, answer: await change<EvaluateRigResponse>('POST', url('rigs:evaluate'), call.body, signal) }))) }), JSON.stringify(calls));
+  const { request: answered, given } = answers.value ?? { request, given: [] };
+  const rig = RIGS[answered.kind];
   const quantity = RIG_QUANTITIES.find((each) => each.id === (query.get('y') ?? rig.first)) ?? RIG_QUANTITIES[0]!;
   const titleOf = (fluid: string) => shortTitle(titles.get(idOf(fluid)) ?? fluid);
-  const curves = useMemo(() => (answers.value && !answers.isStale ? rigCurvesOf(request, answers.value) : []), [answers.value, answers.isStale, inUnits]);
-  const spec = useMemo(() => (curves.length > 0 ? rigSpec(request, curves, quantity, titleOf) : null), [curves, quantity, lubricants.value, inUnits]);
+  const curves = useMemo(() => rigCurvesOf(answered, given), [answers.value, inUnits]);
+  const spec = useMemo(() => (curves.length > 0 ? rigSpec(answered, curves, quantity, titleOf) : null), [curves, quantity, lubricants.value, inUnits]);
   const [at, setAt] = useState<number | null>(null);
   const update = (next: RigRequest) => go(address('/rigs', { ...rigQueryOf(next), y: next.kind === request.kind ? query.get('y') ?? undefined : undefined }), 'replace');
-  const given = answers.value ?? [];
-  const remarks = [...rigRemarks(request, curves, titleOf), ...remarksOnce(given.flatMap((each) => each.answer.input_warnings ?? []))];
+  const remarks = [...rigRemarks(answered, curves, titleOf), ...remarksOnce(given.flatMap((each) => each.answer.input_warnings ?? []))];
   // The revisions that were evaluated: a link with them shows the same tomorrow.
   const pinned = [...new Set(given.map((each) => revisionIdOf(each.answer.lubricant_revision)))];
   const refusals = new Map(given.flatMap((each) => each.answer.refusals ?? []).map((each) => [each.message, each]));
@@ -56,9 +56,9 @@ export function Rigs() {
         {spec && (
           <>
             <div class="heading">
-              <div><h1>{rig.about}</h1><p class="muted">{machineText(request)}</p></div>
-              <TakeAway name={request.kind} spec={{ ...spec, title: `${rig.label}: ${spec.title}` }} requests={calls.map((each) => each.body)} commands={rigCommandsOf(request, project)} link={address('/rigs', { ...rigQueryOf({ ...request, fluids: pinned }), y: query.get('y') ?? undefined })}
-                footer={[machineText(request), given[0]?.answer.model_version ?? '', ...remarkLines(remarks)]} csv={() => tableOf(curves, titleOf)} />
+              <div><h1>{rig.about}</h1><p class="muted">{machineText(answered)}</p></div>
+              <TakeAway name={answered.kind} spec={{ ...spec, title: `${rig.label}: ${spec.title}` }} requests={given.map((each) => each.call.body)} commands={rigCommandsOf(answered, project)} link={address('/rigs', { ...rigQueryOf({ ...answered, fluids: pinned }), y: query.get('y') ?? undefined })}
+                footer={[machineText(answered), given[0]?.answer.model_version ?? '', ...remarkLines(remarks)]} csv={() => tableOf(curves, titleOf)} />
             </div>
             <figure class="figure" aria-label={quantity.label}>
               <div class="tabs" role="group" aria-label="Quantity">
@@ -79,7 +79,7 @@ export function Rigs() {
                 </div>
               </div>
             </figure>
-            <ReadOut request={request} curves={curves} titleOf={titleOf} at={at} onAt={setAt} />
+            <ReadOut request={answered} curves={curves} titleOf={titleOf} at={at} onAt={setAt} />
             <Validity remarks={remarks} isOpen={refusals.size > 0}>
               {[...refusals.values()].map((each) => <li key={each.message} class="outside">No figures: {each.message}</li>)}
               <li class="note">The contact is the one of the axle: film by eq 12, with the friction, heat and asperities of the flanks.</li>
