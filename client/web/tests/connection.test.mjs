@@ -195,6 +195,26 @@ test('what a server that went away was asked to do is not shown as done', async 
   assert.equal(await page.locator('.panel .notice.error').count(), 0);
 });
 
+test('signing out in one tab signs out every tab, and none shows a formulation any more', async (scenario) => {
+  const page = await signedIn(scenario, '/campaigns/new');
+  const others = await Promise.all(['/fluids/my-oil', '/fluids/my-oil/edit'].map(async (address) => {
+    const other = await newTab(page.context(), server);
+    await other.goto(server.address + address);
+    await other.getByRole('heading', { name: 'My oil' }).waitFor();
+    await other.evaluate(() => sessionStorage.setItem('campaign table', 'a draft'));
+    return other;
+  }));
+  await page.getByRole('button', { name: 'Sign out' }).click();
+  for (const other of others) {
+    await other.getByRole('dialog').waitFor();
+    assert.equal(await other.getByText('My oil').count(), 0);
+    assert.equal(await other.evaluate(() => sessionStorage.length), 0);
+    await other.goBack();
+    await other.getByRole('dialog').waitFor();
+    assert.equal(await other.getByText('My oil').count(), 0);
+  }
+});
+
 test('a session that is read again and is as before loads nothing again', async (scenario) => {
   const page = await signedIn(scenario, '/');
   // A stream that is refused has the page read its session.

@@ -122,9 +122,26 @@ export async function signIn(token: string): Promise<void> {
   session.set(await (await send('/session', { method: 'POST', headers })).json());
 }
 
-export async function signOut(): Promise<void> {
-  await send('/session', { method: 'DELETE', headers: { 'Tribodyn-Csrf': session.value?.csrf_token ?? '' } });
+/** Leaves nothing of the session on the screen or in the storage of the tab. */
+function leave(): void {
+  sessionStorage.clear();
   window.location.assign('/');
+}
+
+/** Tells the other tabs of the browser that the session was ended. */
+const signOuts = new BroadcastChannel('sign-out');
+signOuts.onmessage = leave;
+// A browser may keep a page whole and show it again after the end of its session.
+window.addEventListener('pageshow', (event) => event.persisted && window.location.reload());
+
+export async function signOut(): Promise<void> {
+  try {
+    await send('/session', { method: 'DELETE', headers: { 'Tribodyn-Csrf': session.value?.csrf_token ?? '' } });
+  } catch (error) {
+    if ((error as ApiError).status !== 401) throw error;
+  }
+  signOuts.postMessage(null);
+  leave();
 }
 
 /** The address of a resource or method of the present project: "lubricants/a" or "simulations". */
