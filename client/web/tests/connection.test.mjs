@@ -227,3 +227,26 @@ test('a session that is read again and is as before loads nothing again', async 
   while (refused < 3) await page.waitForTimeout(100);
   assert.equal(lists.length, 1, lists.join('\n'));
 });
+
+test('a guest with a small quota of calls gets every view, slower, and reads what it waits for', async (scenario) => {
+  const page = await signedIn(scenario, '/more', await server.newToken('guest', '--calls-per-second', '2'));
+  page.expect(429, '/v1/');
+  for (const address of ['/curves?r=1,2', '/campaigns/1']) {
+    await page.goto(server.address + address);
+    await page.locator(ROUTES.find(([route]) => route === address)[1]).first().waitFor();
+    assert.equal(await page.locator('.notice.error').count(), 0);
+  }
+});
+
+test('a page that is made to wait for long counts down to its next try', async (scenario) => {
+  const page = await signedIn(scenario, '/more', await server.newToken('slow-guest', '--calls-per-second', '0.25'));
+  page.expect(429, '/v1/');
+  await page.goto(`${server.address}/fluids/my-oil`);
+  const seconds = async () => Number.parseInt(await page.getByRole('timer').textContent(), 10);
+  await page.getByRole('timer').waitFor();
+  const first = await seconds();
+  assert.ok(first > 1 && first <= 60, `${first} s`);
+  await page.waitForFunction((before) => Number.parseInt(document.querySelector('[role="timer"]')?.textContent ?? '0', 10) < before, first);
+  await page.locator('.parameters tbody tr').first().waitFor();
+  await page.getByRole('timer').waitFor({ state: 'detached' });
+});

@@ -37,6 +37,14 @@ export const awaySince = new Store<Date | null>(null);
 /** How often the server was away and came back. */
 export const returns = new Store(0);
 
+/** A request that waits because the server turned it away. */
+export interface Wait {
+  why: string;
+  until: number; // of Date.now()
+}
+/** Requests that wait for long. */
+export const waits = new Store<readonly Wait[]>([]);
+
 /** Whether views load again by themselves after an error: once somebody has signed in, or once the server is back. */
 export const isPassing = (error: unknown): boolean => error instanceof ApiError && (error.status === 401 || error.status === 0);
 
@@ -57,21 +65,44 @@ async function errorOf(response: Response): Promise<ApiError> {
 }
 
 const LONGEST_PAUSE = 60; // seconds
+const LONG_WAIT_MILLISECONDS = 2000; // of all tries: from then on the reader is told
 const AMID_WORK = ['STORE_FAILED', 'OUT_OF_MEMORY']; // a change may have had its effect
 
 /** Sends a request. One that the server turns away for some seconds had no effect and is sent again after the pause that it requests. */
 async function send(path: string, init: RequestInit): Promise<Response> {
-  for (;;) {
-    try {
-      return await sendOnce(path, init);
-    } catch (failure) {
-      const { retryAfterSeconds: seconds, reason } = failure instanceof ApiError ? failure : { retryAfterSeconds: 0, reason: '' };
-      if (!(seconds > 0 && seconds <= LONGEST_PAUSE) || (init.method && AMID_WORK.includes(reason))) throw failure;
-      await new Promise((done) => setTimeout(done, 1000 * (seconds + 0.2 * Math.random())));
-      init.signal?.throwIfAborted();
+  const began = Date.now();
+  let wait: Wait | undefined;
+  const tell = (next?: Wait) => {
+    waits.set([...waits.value.filter((each) => each !== wait), ...(next ? [next] : [])]);
+    wait = next;
+  };
+  try {
+    for (;;) {
+      try {
+        return await sendOnce(path, init);
+      } catch (failure) {
+        if (!(failure instanceof ApiError)) throw failure;
+        const { retryAfterSeconds: seconds, reason, message } = failure;
+        if (!(seconds > 0 && seconds <= LONGEST_PAUSE) || (init.method && AMID_WORK.includes(reason))) throw failure;
+        const until = Date.now() + 1000 * (seconds + 0.2 * Math.random());
+        if (until - began > LONG_WAIT_MILLISECONDS) tell({ why: message.split('; try again')[0]!, until });
+        await sleep(until - Date.now(), init.signal);
+      }
     }
+  } finally {
+    if (wait) tell();
   }
 }
+
+/** Waits; fails as soon as the signal says that nobody waits any more. */
+const sleep = (milliseconds: number, signal?: AbortSignal | null): Promise<void> =>
+  new Promise((done, fail) => {
+    const timer = setTimeout(done, milliseconds);
+    signal?.addEventListener('abort', () => {
+      clearTimeout(timer);
+      fail(signal.reason);
+    });
+  });
 
 async function sendOnce(path: string, init: RequestInit): Promise<Response> {
   let response: Response;

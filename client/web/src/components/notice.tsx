@@ -1,5 +1,7 @@
 import type { ComponentChildren } from 'preact';
-import { ApiError } from '../api/client';
+import { useEffect, useState } from 'preact/hooks';
+import { ApiError, waits } from '../api/client';
+import { useStore } from '../store';
 
 export function Notice({ kind, children }: { kind: 'caution' | 'error' | 'ok'; children: ComponentChildren }) {
   return <div class={`notice ${kind}`} role={kind === 'error' ? 'alert' : 'status'}>{children}</div>;
@@ -17,6 +19,25 @@ export function Failure({ error, onRetry }: { error: unknown; onRetry?: () => vo
       )}
       {refusal?.reason && <p class="code">{refusal.reason}</p>}
       {onRetry && <button onClick={onRetry}>Try again</button>}
+    </Notice>
+  );
+}
+
+/** Why requests wait, with the seconds until the next one is sent again. */
+export function Waiting() {
+  const all = useStore(waits);
+  const [, redraw] = useState(0);
+  const isWaiting = all.length > 0;
+  useEffect(() => {
+    if (!isWaiting) return;
+    const timer = setInterval(() => redraw((count) => count + 1), 500);
+    return () => clearInterval(timer);
+  }, [isWaiting]);
+  if (!isWaiting) return null;
+  const next = all.reduce((best, each) => (each.until < best.until ? each : best));
+  return (
+    <Notice kind="caution">
+      {next.why.charAt(0).toUpperCase() + next.why.slice(1)}. Trying again in <span role="timer">{Math.max(1, Math.ceil((next.until - Date.now()) / 1000))} s</span>.
     </Notice>
   );
 }

@@ -8,7 +8,7 @@ import { units } from '../units';
 import { Home } from '../views/home';
 import { Keys } from './keys';
 import { Missing } from './missing';
-import { Failure, Notice } from './notice';
+import { Failure, Notice, Waiting } from './notice';
 import { SignIn } from './sign_in';
 import { UnitChoices } from './unit_choices';
 
@@ -123,7 +123,7 @@ export function Shell() {
         </nav>
         <Account />
       </header>
-      {away && (
+      {!away ? <Waiting /> : (
         <Notice kind="caution">
           <span data-away>Not connected since {away.toLocaleTimeString()}. The page shows what was loaded, and connects again by itself.</span>
         </Notice>
