@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { campaignOf, foreignNumbers, launch, newPage, output, Server, signIn, TRIBODYN } from './harness.mjs';
+import { campaignOf, foreignNumbers, launch, newPage, newTab, output, Server, signIn, TRIBODYN } from './harness.mjs';
 
 let browser;
 let server;
@@ -51,6 +51,31 @@ test('a campaign whose budget is spent says so and goes on without it', async ()
   await page.getByRole('button', { name: 'Resume without a budget' }).click();
   await page.waitForFunction(() => /(\d+) of \1 rows are computed/.test(document.querySelector('.campaign-progress').textContent));
   assert.equal((await server.call('GET', `/v1/${name}`)).state, 'SUCCEEDED');
+});
+
+test('a campaign that cannot be written is stalled, with the reason, until it goes on', async (scenario) => {
+  const { name } = await server.call('POST', '/v1/campaigns', slowCampaign);
+  const tab = await newTab(page.context(), server);
+  scenario.after(() => tab.close());
+  const stalled = { reason: 'STORE_FAILED', message: 'The disk is full.' };
+  const event = { name, kind: 'STATE_CHANGE', state: 'RUNNING', points: 30_000, points_done: 7, stalled };
+  // No disk is full here: what the server says is changed on its way.
+  await tab.route('**/v1/campaigns?*', async (route) => {
+    const body = await (await route.fetch()).json();
+    body.campaigns.find((each) => each.name === name).stalled = stalled;
+    await route.fulfill({ json: body });
+  });
+  await tab.route(`**/v1/${name}:watch*`, (route) => route.fulfill({ contentType: 'text/event-stream', body: `retry: 100\ndata: ${JSON.stringify(event)}\n\n` }));
+  await tab.goto(`${server.address}/campaigns`);
+  const row = tab.locator('tr', { hasText: stalled.message });
+  await row.locator('.state.stalled').waitFor();
+  await row.getByRole('link', { name: 'slow' }).click();
+  await tab.locator('.notice.caution', { hasText: stalled.message }).waitFor();
+  await tab.locator('.campaign-progress .state.stalled').waitFor();
+  delete event.stalled;
+  await tab.locator('.campaign-progress .state.stalled').waitFor({ state: 'detached' });
+  assert.equal(await tab.getByText(stalled.message).count(), 0);
+  await server.call('POST', `/v1/${name}:cancel`, {});
 });
 
 /** Waits until a campaign has ended and shows the page anew, which then has all rows. */

@@ -35,7 +35,7 @@ const MOST_AXES = 8;
 const ENDED = ['SUCCEEDED', 'FAILED', 'CANCELLED'];
 
 /** What lists show of a campaign. */
-const LISTED = 'name,display_name,state,stop,lubricant,candidates,rig,points,points_done,points_refused,labels,create_time';
+const LISTED = 'name,display_name,state,stop,stalled,lubricant,candidates,rig,points,points_done,points_refused,labels,create_time';
 /** What the page of a campaign shows; values of its candidates come with its rows. */
 const SHOWN = `${LISTED},conditions,model_options,refusals,lubricant_revision,gear_set_revision,surface_revision,vehicle_revision`;
 const SHOWN_OF_CANDIDATES = `${SHOWN},candidate_columns.path,candidate_attributes.name,candidate_attributes.texts`;
@@ -51,10 +51,10 @@ export function Campaigns() {
 /** A campaign after an event. */
 const updated = (campaign: Campaign, event: CampaignEvent): Campaign => {
   if (event.kind === 'HEARTBEAT' || event.kind === 'DELETED') return campaign;
-  const { stop: _, ...rest } = campaign;
+  const { stop: _, stalled: __, ...rest } = campaign;
   return {
     ...rest, state: event.state!, points_done: event.points_done ?? 0, points_refused: event.points_refused ?? 0,
-    processor_seconds: event.processor_seconds ?? 0, ...(event.stop ? { stop: event.stop } : {}),
+    processor_seconds: event.processor_seconds ?? 0, ...(event.stop ? { stop: event.stop } : {}), ...(event.stalled ? { stalled: event.stalled } : {}),
   };
 };
 
@@ -66,9 +66,9 @@ function State({ campaign }: { campaign: Campaign }) {
   const words: Record<string, string> = { PAUSED: 'paused', SUCCEEDED: 'done', FAILED: 'failed', CANCELLED: 'cancelled' };
   const isOpen = !ENDED.includes(campaign.state!);
   return (
-    <span class={`state ${campaign.state!.toLowerCase()}`}>
+    <span class={`state ${campaign.stalled ? 'stalled' : campaign.state!.toLowerCase()}`}>
       {isOpen && <progress max={campaign.points} value={campaign.points_done ?? 0} aria-label="Progress" />}
-      {words[campaign.state!] ?? `${Math.floor((100 * (campaign.points_done ?? 0)) / campaign.points!)} %`}
+      {campaign.stalled ? 'stalled' : words[campaign.state!] ?? `${Math.floor((100 * (campaign.points_done ?? 0)) / campaign.points!)} %`}
     </span>
   );
 }
@@ -137,7 +137,7 @@ function CampaignList() {
                   <td>{shortTitle(titles.get(idOf(each.lubricant)) ?? idOf(each.lubricant))}</td>
                   <td class="number">{each.candidates}</td>
                   <td class="number">{conditionsOf(each)}{each.rig && <small>of a rig</small>}</td>
-                  <td><State campaign={each} />{each.stop && <small class={each.state === 'FAILED' ? 'problem' : ''}>{each.stop.message}</small>}</td>
+                  <td><State campaign={each} />{(each.stop ?? each.stalled) && <small class={each.state === 'FAILED' ? 'problem' : ''}>{(each.stop ?? each.stalled)!.message}</small>}</td>
                   <td class="number">{each.points_refused ?? 0}</td>
                   <td class="number">{ago(each.create_time)}</td>
                   <td><div class="actions"><Actions campaign={each} onChange={(next) => put(() => next, each.name!)} onFailure={setProblem} /></div></td>
@@ -194,7 +194,7 @@ function CampaignPage({ name }: { name: string }) {
   if (isDeleted) return <Notice kind="caution">The campaign was deleted.</Notice>;
   if (!campaign) return <p class="muted">Loading …</p>;
   const canAppend = session.value?.scope !== 'read' && ['RUNNING', 'PAUSED', 'SUCCEEDED'].includes(campaign.state!) && (campaign.candidates ?? 0) > 1;
-  const keep = (next: Campaign) => setCampaign((old) => ({ ...old, ...next, candidate_columns: old!.candidate_columns, candidate_attributes: old!.candidate_attributes } as Campaign));
+  const keep = (next: Campaign) => setCampaign((old) => ({ ...old, stop: undefined, stalled: undefined, ...next, candidate_columns: old!.candidate_columns, candidate_attributes: old!.candidate_attributes } as Campaign));
   return (
     <>
       <div class="heading">
@@ -216,11 +216,12 @@ function CampaignPage({ name }: { name: string }) {
       </div>
       {problem !== null && <Failure error={problem} />}
       {campaign.stop && <Notice kind={campaign.state === 'FAILED' ? 'error' : 'caution'}>{campaign.stop.message}</Notice>}
+      {campaign.stalled && <Notice kind="caution">{campaign.stalled.message}</Notice>}
       <p class="campaign-progress">
         <progress max={campaign.points} value={campaign.points_done ?? 0} aria-label="Progress of the campaign" />
         <span><span data-value={campaign.points_done ?? 0}>{campaign.points_done ?? 0}</span> of <span data-value={campaign.points}>{campaign.points}</span> rows are computed
           {(campaign.points_refused ?? 0) > 0 && <>, <span data-value={campaign.points_refused}>{campaign.points_refused}</span> of them without figures</>}
-          {campaign.state === 'CANCELLED' && '; the campaign was cancelled'}{campaign.state === 'RUNNING' && ' …'}</span>
+          {campaign.state === 'CANCELLED' && '; the campaign was cancelled'}{campaign.stalled ? <>; <span class="state stalled">stalled</span></> : campaign.state === 'RUNNING' && ' …'}</span>
       </p>
       {rows.error !== undefined && <Failure error={rows.error} onRetry={rows.reload} />}
       {rows.value && <Results campaign={campaign} rows={rows.value} version={version} />}
