@@ -32,7 +32,7 @@ struct Application {
   /// Number of histories that are being read. Shared, because a reader may outlive the object.
   std::shared_ptr<std::atomic<int>> open_histories = std::make_shared<std::atomic<int>>(0);
   /// Watches with a filter that are open; shared for the same reason.
-  std::shared_ptr<std::atomic<int>> open_filters = std::make_shared<std::atomic<int>>(0);
+  std::shared_ptr<std::atomic<int>> open_project_watches = std::make_shared<std::atomic<int>>(0);
   /// For calls that compute; the executor has its own.
   std::shared_ptr<PreparedGearSets> gear_sets = std::make_shared<PreparedGearSets>();
   /// For checking the inputs of new simulations, on half of the processors. Beside 20,000 refused

@@ -18,7 +18,8 @@ StreamOutcome<v1::SimulationEvent> watch_simulation(Application& application,
                                                     const v1::WatchSimulationRequest& request,
                                                     const CallContext& call = {});
 
-/// Events of many simulations, in the order of their numbers.
+/// Events of many simulations, in the order of their numbers: those named, those that satisfy a
+/// filter, or all of the project.
 StreamOutcome<v1::SimulationEvent> watch_simulations(Application& application,
                                                      const v1::WatchSimulationsRequest& request,
                                                      const CallContext& call = {});
@@ -28,8 +29,8 @@ StreamOutcome<v1::ReadHistoryResponse> read_history(Application& application,
                                                     const v1::ReadHistoryRequest& request,
                                                     const CallContext& call = {});
 
-/// Watches with a filter. Each commit wakes all of them, at about a microsecond each.
-inline constexpr int kMostFilters = 200;
+/// Watches without names. Each commit wakes all of them, at about a microsecond each.
+inline constexpr int kMostProjectWatches = 200;
 
 inline constexpr std::int64_t kChunkValues = 32'768;         ///< 256 KiB of doubles
 inline constexpr std::int64_t kOpenHistoryValues = 524'288;  ///< 4 MiB, in chunks under way

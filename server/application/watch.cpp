@@ -20,7 +20,7 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr double kRetrySeconds = 10;  // for a place among the watches with a filter
+constexpr double kRetrySeconds = 10;  // for a place among the watches without names
 
 /// A simulation whose end the watch has not reported.
 struct Watched {
@@ -80,9 +80,9 @@ struct Beginning {
   }
 };
 
-/// Events of named simulations or, without names, of those of a project that satisfy restrictions.
-/// Events come in the order of their numbers and each once; between them the latest progress and,
-/// if nothing happens, heartbeats. Holds one page of events at most.
+/// Events of named simulations or, without names, of those of a project that satisfy restrictions,
+/// of all if there are none. Events come in the order of their numbers and each once; between them
+/// the latest progress and, if nothing happens, heartbeats. Holds one page of events at most.
 class Watch : public MessageSource<v1::SimulationEvent> {
  public:
   /// Of named simulations: those that may still have events after number `after`.
@@ -96,7 +96,7 @@ class Watch : public MessageSource<v1::SimulationEvent> {
         running_(std::move(named.running)),
         channels_(std::move(named.channels)),
         told_through_(after) {}
-  /// Of those of the project of the call that satisfy the restrictions; `running` are those that
+  /// Of those of the project of the call that satisfy all restrictions; `running` are those that
   /// run now.
   Watch(Application& application, std::vector<Restriction> restrictions, Beginning running,
         std::shared_ptr<void> place, std::int64_t after, const CallContext& call)
@@ -163,8 +163,10 @@ class Watch : public MessageSource<v1::SimulationEvent> {
           return watched_.find(each.simulation) == nullptr;
         });
       }
-      // Whether a simulation satisfies the restrictions, only the database can say.
-      if (recent && (is_named_ || recent->events.empty())) return take(*std::move(recent));
+      // Whether a simulation satisfies restrictions, only the database can say.
+      if (recent && (restrictions_.empty() || recent->events.empty())) {
+        return take(*std::move(recent));
+      }
     }
     EventQuery query{.project = project_, .restrictions = restrictions_, .after = told_through_};
     if (is_named_) {
@@ -290,7 +292,7 @@ class Watch : public MessageSource<v1::SimulationEvent> {
 
   Store& store_;
   SimulationJobs& jobs_;
-  std::shared_ptr<void> place_;  // of a filter, else null
+  std::shared_ptr<void> place_;  // among the watches without names, else null
   const CallLimits limits_;      // the end of the stream is its transport's
   const std::string project_;
   bool is_named_;
@@ -371,18 +373,18 @@ Outcome<Source> watch_named(Application& application, const v1::WatchSimulations
   return Source(std::make_shared<Watch>(application, std::move(beginning), after, call));
 }
 
-/// Returns a place among kMostFilters, which is free again when the last copy is destroyed; null if
-/// there is none.
+/// Returns a place among kMostProjectWatches, which is free again when the last copy is destroyed;
+/// null if there is none.
 std::shared_ptr<void> take_place(const std::shared_ptr<std::atomic<int>>& open) {
-  if (++*open > kMostFilters) {
+  if (++*open > kMostProjectWatches) {
     --*open;
     return nullptr;
   }
   return {open.get(), [open](void*) { --*open; }};
 }
 
-Outcome<Source> watch_filtered(Application& application, const v1::WatchSimulationsRequest& request,
-                               const CallContext& call) {
+Outcome<Source> watch_project(Application& application, const v1::WatchSimulationsRequest& request,
+                              const CallContext& call) {
   Violations violations;
   SimulationQuery running{
       .project = call.project,
@@ -394,12 +396,12 @@ Outcome<Source> watch_filtered(Application& application, const v1::WatchSimulati
     }
   }
   if (!violations.empty()) return invalid(violations);
-  std::shared_ptr<void> place = take_place(application.open_filters);
+  std::shared_ptr<void> place = take_place(application.open_project_watches);
   if (!place) {
     return exhausted(v1::ERROR_REASON_TOO_MANY_STREAMS,
-                     fmt::format("{} watches with a filter are open, which is the limit; try again "
+                     fmt::format("{} watches without names are open, which is the limit; try again "
                                  "in {} s",
-                                 kMostFilters, kRetrySeconds),
+                                 kMostProjectWatches, kRetrySeconds),
                      kRetrySeconds);
   }
   std::vector<Restriction> restrictions = running.restrictions;
@@ -422,14 +424,14 @@ Outcome<Source> watch_filtered(Application& application, const v1::WatchSimulati
 StreamOutcome<v1::SimulationEvent> watch_simulations(Application& application,
                                                      const v1::WatchSimulationsRequest& request,
                                                      const CallContext& call) {
-  if ((request.names_size() > 0) == !request.filter().empty()) {
-    return invalid({{"names", "state either names or a filter"}});
+  if (request.names_size() > 0 && !request.filter().empty()) {
+    return invalid({{"filter", "stands beside names; allowed: one of the two"}});
   }
   if (auto refused = unresumable(application.store, request.after_event_number(), call)) {
     return *std::move(refused);
   }
   return request.names_size() > 0 ? watch_named(application, request, call)
-                                  : watch_filtered(application, request, call);
+                                  : watch_project(application, request, call);
 }
 
 StreamOutcome<v1::SimulationEvent> watch_simulation(Application& application,
