@@ -13,13 +13,18 @@
 #include <utility>
 
 #include "server/transport/http/description_pages.h"
+#include "tests/service/openapi_schemas.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {
 namespace {
 
 using nlohmann::json;
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::Not;
 
 class OpenApi : public testing::Test {
@@ -36,86 +41,26 @@ class OpenApi : public testing::Test {
     return out;
   }
 
-  /// Adds to `wrong` each place of a value that its schema does not allow.
-  void compare(const json& value, const json& schema, const std::string& place,
-               std::string& wrong) {
-    if (schema.contains("$ref")) {
-      const std::string name = schema["$ref"];
-      return compare(value, document_.at(json::json_pointer(name.substr(1))), place, wrong);
-    }
-    if (schema.contains("anyOf")) {
-      for (const json& each : schema["anyOf"]) {
-        std::string complaints;
-        compare(value, each, place, complaints);
-        if (complaints.empty()) return;
-      }
-      wrong += place + ": " + value.dump().substr(0, 50) + " is none of the forms\n";
-      return;
-    }
-    const std::string type = schema.value("type", "");
-    const bool fits = type == "object"    ? value.is_object()
-                      : type == "array"   ? value.is_array()
-                      : type == "string"  ? value.is_string()
-                      : type == "boolean" ? value.is_boolean()
-                      : type == "integer" ? value.is_number_integer()
-                                          : value.is_number();
-    if (!fits) wrong += place + ": " + value.dump().substr(0, 50) + " is no " + type + "\n";
-    if (!fits) return;
-    if (schema.contains("enum") &&
-        std::find(schema["enum"].begin(), schema["enum"].end(), value) == schema["enum"].end()) {
-      wrong += place + ": " + value.dump() + " is not in the list\n";
-    }
-    if (value.is_array()) {
-      for (const json& each : value) compare(each, schema["items"], place + "[]", wrong);
-    }
-    if (!value.is_object() || !schema.contains("properties")) return;
-    for (const auto& [name, field] : value.items()) {
-      if (!schema["properties"].contains(name)) {
-        if (schema.contains("additionalProperties")) continue;
-        wrong += place + "." + name + " is not described\n";
-      } else if (!field.is_null()) {
-        compare(field, schema["properties"][name], place + "." + name, wrong);
-      }
-    }
-  }
-
   Bench bench_;
   Application app_ = bench_.application();
   CallDispatcher dispatcher_{app_};
   RestHandler handler_{dispatcher_, description_pages(dispatcher_.methods())};
-  const json document_ = json::parse(openapi_document(handler_.routes()));
+  const OpenApiSchemas schemas_{json::parse(openapi_document(handler_.routes()))};
+  const json& document_ = schemas_.document();
 };
-
-/// "/v1/projects/{project}/lubricants/{lubricant}:undelete" of a route.
-std::string shape(const HttpRoutes::Route& route) {
-  std::string out;
-  for (const std::string& each : route.segments) out += each == "*" ? "/{}" : "/" + each;
-  return route.custom_verb.empty() ? out : out + ":" + route.custom_verb;
-}
-
-std::string without_names(const std::string& path) {
-  std::string out;
-  bool is_inside = false;
-  for (const char each : path) {
-    if (each == '}') is_inside = false;
-    if (!is_inside) out += each;
-    if (each == '{') is_inside = true;
-  }
-  return out;
-}
 
 TEST_F(OpenApi, EveryRouteOfTheTableIsDescribedAndNoOther) {
   std::set<std::string> described;
   for (const auto& [path, verbs] : document_["paths"].items()) {
     for (const auto& [verb, operation] : verbs.items()) {
-      described.insert(verb + " " + without_names(path));
+      described.insert(verb + " " + path_shape(path));
     }
   }
   std::set<std::string> expected;
   for (const HttpRoutes::Route& route : handler_.routes().all()) {
     std::string verb = route.verb;
     for (char& each : verb) each = static_cast<char>(std::tolower(each));
-    expected.insert(verb + " " + shape(route));
+    expected.insert(verb + " " + route_shape(route));
   }
   for (const char* page : {"/healthz", "/metrics", "/openapi.json", "/docs", "/docs.css"}) {
     expected.insert(std::string("get ") + page);
@@ -127,7 +72,7 @@ TEST_F(OpenApi, EveryRouteThatIsDescribedAnswers) {
   for (const auto& [path, verbs] : document_["paths"].items()) {
     if (path == "/healthz" || path == "/metrics") continue;  // pages of the daemon
     for (const auto& [verb, operation] : verbs.items()) {
-      std::string target = without_names(path);
+      std::string target = path_shape(path);
       for (std::size_t at = 0; (at = target.find("{}")) != std::string::npos;) {
         target.replace(at, 2, "x");
       }
@@ -142,31 +87,62 @@ TEST_F(OpenApi, EveryRouteThatIsDescribedAnswers) {
   }
 }
 
-TEST_F(OpenApi, AnswersHaveTheFormsThatAreDescribed) {
-  const auto check = [&](const std::string& target, const std::string& path) {
+TEST_F(OpenApi, ErrorsAndColumnsHaveTheFormsThatAreDescribed) {
+  const auto check = [&](const std::string& target, const std::string& path,
+                         const std::string& type) {
     const HttpResponse response = send("GET", target);
-    std::string wrong;
-    const json& answers = document_["paths"][path]["get"]["responses"];
-    const json& answer = answers[response.status == 200 ? "200" : "default"];
-    const json& schema = response.status == 200 ? answer["content"]["application/json"]["schema"]
+    const std::string content_type = response.headers.at("Content-Type");
+    EXPECT_EQ(content_type.substr(0, content_type.find(';')), type) << target;
+    const json& answer =
+        document_["paths"][path]["get"]["responses"][response.status == 200 ? "200" : "default"];
+    const json& schema = response.status == 200 ? answer["content"][type]["schema"]
                                                 : document_["components"]["schemas"]["Error"];
-    compare(json::parse(response.body), schema, "", wrong);
-    EXPECT_EQ(wrong, "") << target;
+    EXPECT_EQ(schemas_.complaints(json::parse(response.body), schema), "") << target;
   };
-  const std::string name = bench_.create(point_simulation());
-  ASSERT_TRUE(bench_.reaches(name, v1::Simulation::SUCCEEDED));
   const std::string curve = bench_.create(curve_simulation());
   ASSERT_TRUE(bench_.reaches(curve, v1::Simulation::SUCCEEDED));
-  check("/v1/lubricants", "/v1/lubricants");
-  check("/v1/lubricants/none", "/v1/lubricants/{lubricant}");
-  check("/v1/gearSets/reference-axle", "/v1/gearSets/{gear_set}");
-  check("/v1/surfaces", "/v1/surfaces");
-  check("/v1/vehicles", "/v1/vehicles");
-  check("/v1/schema", "/v1/schema");
-  check("/v1/simulations", "/v1/simulations");
-  check("/v1/" + name + "?view=SIMULATION_VIEW_FULL", "/v1/simulations/{simulation}");
-  check("/v1/" + curve + "?view=SIMULATION_VIEW_FULL", "/v1/simulations/{simulation}");
-  check("/v1/" + curve + "?alt=columns", "/v1/simulations/{simulation}");
+  check("/v1/lubricants/none", "/v1/lubricants/{lubricant}", "application/json");
+  check("/v1/" + curve, "/v1/simulations/{simulation}", "application/json");
+  check("/v1/" + curve + "?alt=columns", "/v1/simulations/{simulation}",
+        "application/vnd.tribodyn.columns+json");
+}
+
+TEST_F(OpenApi, JsonOfASimulationIsASimulationAndNothingElse) {
+  const json& forms =
+      document_["paths"]["/v1/simulations/{simulation}"]["get"]["responses"]["200"]["content"];
+  EXPECT_EQ(forms["application/json"]["schema"]["$ref"], "#/components/schemas/Simulation");
+}
+
+TEST_F(OpenApi, AnswersRequireWhatIsAlwaysPrintedAndRequestsWhatTheServerNeeds) {
+  const json& schemas = document_["components"]["schemas"];
+  const auto required = [&](const std::string& schema) {
+    return schemas.at(schema).value("required", std::vector<std::string>());
+  };
+  EXPECT_THAT(required("Simulation"), AllOf(Contains("state"), Contains("labels")));
+  EXPECT_THAT(required("Simulation"), Not(Contains("result"))) << "may be absent";
+  EXPECT_THAT(required("SimulationEvent"), Not(Contains("remaining_seconds"))) << "optional";
+  EXPECT_THAT(required("CandidateAttributeInput"), ElementsAre("name"));
+  EXPECT_THAT(required("SimulationInput"), ElementsAre("lubricant"));
+  EXPECT_THAT(required("SimulationUpdate"), IsEmpty()) << "a change states any of the fields";
+  EXPECT_THAT(required("FindParetoCandidatesRequest"), ElementsAre("second"));
+}
+
+TEST_F(OpenApi, NoBodyHasAFieldOfThePathOfItsRequest) {
+  for (const HttpRoutes::Route& route : handler_.routes().all()) {
+    if (route.body_field != "*") continue;
+    const json& body = schemas_.operation(route)["requestBody"];
+    const std::string name = body["content"]["application/json"]["schema"]["$ref"];
+    const json& schema = document_.at(json::json_pointer(name.substr(1)));
+    for (const HttpRoutes::Route::Variable& each : route.variables) {
+      EXPECT_FALSE(schema["properties"].contains(each.field)) << route.text;
+      EXPECT_THAT(schema.value("required", std::vector<std::string>()), Not(Contains(each.field)))
+          << route.text;
+    }
+    EXPECT_EQ(body["required"], schema.contains("required")) << route.text;
+  }
+  EXPECT_TRUE(
+      document_["components"]["schemas"]["EvaluatePointsRequest"]["properties"].contains("parent"))
+      << "the route without a project has it in the body";
 }
 
 TEST_F(OpenApi, CommentsOfTheProtosDescribeOperationsAndFields) {

@@ -1,5 +1,6 @@
 // Every method of the table by gRPC and by REST: the same requests in the same order to two equal
-// servers have the same answers, messages and errors alike.
+// servers have the same answers, messages and errors alike. Bodies and answers of REST are as the
+// OpenAPI description has them, without a field that it does not name.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <google/protobuf/text_format.h>
@@ -22,9 +23,11 @@
 #include "server/storage/seeds.h"
 #include "server/transport/grpc/grpc_server.h"
 #include "server/transport/http/http_server.h"
+#include "server/transport/http/openapi.h"
 #include "server/transport/http/rest_answer.h"
 #include "tests/service/contract_methods.h"
 #include "tests/service/http_client.h"
+#include "tests/service/openapi_schemas.h"
 #include "tests/service/raw_client.h"
 #include "tests/service/rest_rendering.h"
 #include "tests/service/server_process.h"
@@ -104,16 +107,55 @@ class RestTwin final : public Twin {
       sent.target += sent.target.find('?') == std::string::npos ? "?" : "&";
       sent.target += "alt=ndjson";
     }
+    const Described described = description(method, sent);
     HttpConnection client(server_.address().port);
     std::string text = sent.verb + " " + sent.target + " HTTP/1.0\r\n" + kHost;
     for (const auto& [name, value] : sent.headers) text += name + ": " + value + "\r\n";
     if (!sent.body.empty()) text += fmt::format("Content-Length: {}\r\n", sent.body.size());
     EXPECT_TRUE(client.send_all(text + "\r\n" + sent.body));
-    return read(method, client.read_all());
+    return read(method, described, client.read_all());
   }
 
  private:
-  static Answer read(const Method& method, const std::string& response) {
+  /// What the description says of a request and its answer.
+  struct Described {
+    std::string body;  ///< of the request; empty: none
+    const nlohmann::json* operation;
+    OpenApiSchemas::Rigour rigour;  ///< of the answer
+  };
+  Described description(const Method& method, const HttpRequest& sent) const {
+    const std::string path = sent.target.substr(0, sent.target.find('?'));
+    for (const HttpRoutes::Route& route : handler_.routes().all()) {
+      if (route.method->descriptor != method.descriptor) continue;
+      const bool in_project = path.starts_with("/v1/projects/");
+      if ((route.segments[1] == "projects") != in_project) continue;
+      const bool is_masked = sent.target.find("read_mask=") != std::string::npos ||
+                             sent.body.find("\"read_mask\"") != std::string::npos;
+      return {sent.body, &schemas_.operation(route),
+              is_masked ? OpenApiSchemas::Rigour::kSomeFields : OpenApiSchemas::Rigour::kWhole};
+    }
+    throw std::logic_error("no route of " + path);
+  }
+
+  /// The description allows the answer, and the request if the server did not refuse it.
+  void check_description(const Described& described, const std::string& type,
+                         const std::string& answer) const {
+    const nlohmann::json& operation = *described.operation;
+    const std::string id = operation["operationId"];
+    EXPECT_EQ(schemas_.complaints(nlohmann::json::parse(answer),
+                                  operation["responses"]["200"]["content"][type]["schema"],
+                                  described.rigour),
+              "")
+        << id;
+    if (described.body.empty()) return;
+    EXPECT_EQ(
+        schemas_.complaints(nlohmann::json::parse(described.body),
+                            operation["requestBody"]["content"]["application/json"]["schema"]),
+        "")
+        << id;
+  }
+
+  Answer read(const Method& method, const Described& described, const std::string& response) const {
     Answer out;
     const std::size_t end = response.find("\r\n\r\n");
     if (end == std::string::npos) {
@@ -130,10 +172,12 @@ class RestTwin final : public Twin {
     if (!method.open) {
       out.messages.emplace_back(method.response->New());
       read_json(body, *out.messages.back());
+      check_description(described, "application/json", body);
       return out;
     }
     std::istringstream lines(body);
     for (std::string line; std::getline(lines, line);) {
+      check_description(described, "application/x-ndjson", line);
       out.messages.emplace_back(method.response->New());
       read_json(nlohmann::json::parse(line).at("result").dump(), *out.messages.back());
     }
@@ -141,6 +185,7 @@ class RestTwin final : public Twin {
   }
 
   RestHandler handler_{dispatcher_};
+  const OpenApiSchemas schemas_{nlohmann::json::parse(openapi_document(handler_.routes()))};
   HttpServer server_{handler_, {"127.0.0.1", 0, ""}};
 };
 

@@ -169,6 +169,32 @@ TEST_F(RestTest, ResourceIsCreatedUpdatedAndDeletedWithItsEtag) {
   EXPECT_EQ(send("POST", "/v1/lubricants/mine:undelete", "{}").status, 200);
 }
 
+TEST_F(RestTest, ABodyThatNamesAnotherResourceThanThePathIsRefused) {
+  const auto undelete = [&](const std::string& path, const std::string& name) {
+    return send("POST", path + ":undelete", json{{"name", name}}.dump());
+  };
+  EXPECT_EQ(send("DELETE", "/v1/lubricants/paper-fluid-2").status, 200);
+  const HttpResponse other = undelete("/v1/lubricants/paper-fluid-2", "lubricants/paper-fluid-1");
+  EXPECT_EQ(other.status, 400);
+  EXPECT_THAT(violations(other).at("name"), testing::AllOf(HasSubstr("lubricants/paper-fluid-1"),
+                                                           HasSubstr("lubricants/paper-fluid-2")));
+  EXPECT_EQ(
+      undelete("/v1/lubricants/paper-fluid-2", "projects/default/lubricants/paper-fluid-2").status,
+      200)
+      << "the same name";
+  const HttpResponse renamed = send("PATCH", "/v1/lubricants/paper-fluid-2",
+                                    R"({"name": "lubricants/paper-fluid-1", "description": "x"})");
+  EXPECT_THAT(violations(renamed).at("lubricant.name"), HasSubstr("lubricants/paper-fluid-1"));
+  EXPECT_EQ(send("PATCH", "/v1/lubricants/paper-fluid-2",
+                 R"({"name": "lubricants/paper-fluid-2", "description": "x"})")
+                .status,
+            200);
+  bench_.store().add_project("acme", seed_resources(), 1);
+  const HttpResponse elsewhere =
+      send("POST", "/v1/projects/acme/points:evaluate", R"({"parent": "projects/default"})");
+  EXPECT_THAT(violations(elsewhere).at("parent"), HasSubstr("projects/acme"));
+}
+
 TEST_F(RestTest, AConditionThatCannotBeKeptIsRefused) {
   for (const char* header : {"tag", "W/\"tag\"", "\"a\", \"b\"", "\"\""}) {
     const HttpResponse response =

@@ -126,7 +126,7 @@ Outcome<HttpResponse> curve_table(const v1::Simulation& simulation,
   out.headers["Content-Type"] = content_type(form);
   if (form == Form::kCsv) out.body = csv_header(names) + csv_rows(columns);
   if (form == Form::kNumpy) out.body = numpy_header(names, rows) + numpy_rows(columns);
-  if (form == Form::kColumns) out.body = json_columns(names, columns);
+  if (form == Form::kPointColumns) out.body = json_columns(names, columns);
   return out;
 }
 

@@ -17,13 +17,15 @@ struct Words {
   std::string_view word;  ///< of the query parameter
   std::string_view media_type;
 };
-constexpr std::array kWords = {Words{Form::kMessage, "json", "application/json"},
-                               Words{Form::kEvents, "sse", "text/event-stream"},
-                               Words{Form::kLines, "ndjson", "application/x-ndjson"},
-                               Words{Form::kColumns, "columns", "application/json"},
-                               Words{Form::kCsv, "csv", "text/csv"},
-                               Words{Form::kNumpy, "npy", "application/x-npy"},
-                               Words{Form::kBinary, "binary", "application/octet-stream"}};
+constexpr std::array kWords = {
+    Words{Form::kMessage, "json", "application/json"},
+    Words{Form::kEvents, "sse", "text/event-stream"},
+    Words{Form::kLines, "ndjson", "application/x-ndjson"},
+    Words{Form::kColumns, "columns", "application/json"},
+    Words{Form::kPointColumns, "columns", "application/vnd.tribodyn.columns+json"},
+    Words{Form::kCsv, "csv", "text/csv"},
+    Words{Form::kNumpy, "npy", "application/x-npy"},
+    Words{Form::kBinary, "binary", "application/octet-stream"}};
 
 const Words& words_of(Form form) {
   return *std::find_if(kWords.begin(), kWords.end(),
@@ -80,7 +82,7 @@ std::string list_of(const std::vector<Form>& offered, std::string_view Words::*w
 
 std::string content_type(Form form) {
   const std::string_view type = words_of(form).media_type;
-  const bool is_text = type.starts_with("text/") || type == "application/json";
+  const bool is_text = type.starts_with("text/") || type.ends_with("json");
   return std::string(type) + (is_text ? "; charset=utf-8" : "");
 }
 

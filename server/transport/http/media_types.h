@@ -16,9 +16,11 @@ enum class Form {
   kEvents,   ///< server-sent events
   kLines,    ///< messages as JSON lines
   kColumns,  ///< columns in JSON
-  kCsv,      ///< columns as a table with a header line
-  kNumpy,    ///< columns as a structured array in a .npy file
-  kBinary,   ///< columns of little-endian doubles after a JSON header
+  /// The same of a method that also answers kMessage: a media type of its own tells the two apart.
+  kPointColumns,
+  kCsv,     ///< columns as a table with a header line
+  kNumpy,   ///< columns as a structured array in a .npy file
+  kBinary,  ///< columns of little-endian doubles after a JSON header
 };
 
 /// Returns the form that a client asks for: the query parameter "alt", else the header Accept. The

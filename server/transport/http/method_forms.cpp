@@ -8,7 +8,7 @@ namespace tribodyn::server {
 
 std::vector<Form> forms_of(const Method& method) {
   if (method.descriptor->input_type() == v1::GetSimulationRequest::descriptor()) {
-    return {Form::kMessage, Form::kColumns, Form::kCsv, Form::kNumpy};
+    return {Form::kMessage, Form::kPointColumns, Form::kCsv, Form::kNumpy};
   }
   if (method.answer) return {Form::kMessage};
   // Events have positions that a client resumes after; other messages are parts of one whole.

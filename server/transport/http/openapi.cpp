@@ -38,7 +38,9 @@ using Json = nlohmann::ordered_json;
 constexpr char kIntroduction[] =
     "Every method of the contract over HTTP/1.1. Bodies are protobuf's JSON with names in "
     "snake_case. 64-bit integers are texts, because JavaScript rounds them; a request may state "
-    "them as numbers. Answers have every field, zeros included, unless a read_mask chooses some. "
+    "them as numbers. Answers have every field that their schemas require, zeros included, unless "
+    "a read_mask chooses some. XInput is the schema of X in requests, XUpdate that of a change. A "
+    "body may repeat a field of the path, with the same value. "
     "Field masks in bodies are texts with names in camelCase and commas between them "
     "(\"displayName,labels\"); in queries snake_case is read as well.\n\n"
     "A call needs a token (Authorization: Bearer TOKEN), except over the Unix socket of the "
@@ -92,6 +94,9 @@ std::string joined_sentences(const std::vector<std::string>& sentences) {
   return out;
 }
 
+/// Where a message stands: that decides which of its fields are required.
+enum class Use { kAnswer, kRequest };
+
 class OpenApiDocument {
  public:
   explicit OpenApiDocument(const HttpRoutes& routes);
@@ -99,11 +104,12 @@ class OpenApiDocument {
 
  private:
   // Schemas.
-  Json value_schema(const FieldDescriptor& field);
-  Json field_schema(const FieldDescriptor& field);
-  Json message_reference(const Descriptor& type);
+  Json value_schema(const FieldDescriptor& field, Use use);
+  Json field_schema(const FieldDescriptor& field, Use use);
+  Json message_reference(const Descriptor& type, Use use);
+  Json body_reference(const HttpRoutes::Route& route);
   Json enum_reference(const EnumDescriptor& type);
-  Json message_schema(const Descriptor& type);
+  Json message_schema(const Descriptor& type, Use use);
   std::string range_text(const FieldDescriptor& field) const;
   void add_basic_schemas();
   // Operations.
@@ -134,7 +140,7 @@ std::string OpenApiDocument::range_text(const FieldDescriptor& field) const {
   return out + ".";
 }
 
-Json OpenApiDocument::value_schema(const FieldDescriptor& field) {
+Json OpenApiDocument::value_schema(const FieldDescriptor& field, Use use) {
   switch (field.type()) {
     case FieldDescriptor::TYPE_DOUBLE:
     case FieldDescriptor::TYPE_FLOAT:
@@ -155,14 +161,14 @@ Json OpenApiDocument::value_schema(const FieldDescriptor& field) {
       return enum_reference(*field.enum_type());
     case FieldDescriptor::TYPE_MESSAGE:
     case FieldDescriptor::TYPE_GROUP:
-      return message_reference(*field.message_type());
+      return message_reference(*field.message_type(), use);
     default:
       return {{"type", "integer"}, {"format", "int32"}};
   }
 }
 
-Json OpenApiDocument::field_schema(const FieldDescriptor& field) {
-  Json out = value_schema(field);
+Json OpenApiDocument::field_schema(const FieldDescriptor& field, Use use) {
+  Json out = value_schema(field, use);
   std::string limit;
   const auto& options = field.options();
   if (field.is_repeated()) {
@@ -203,17 +209,19 @@ Json OpenApiDocument::enum_reference(const EnumDescriptor& type) {
   return reference("schemas", name);
 }
 
-Json OpenApiDocument::message_schema(const Descriptor& type) {
+Json OpenApiDocument::message_schema(const Descriptor& type, Use use) {
   Json properties = Json::object();
   Json required = Json::array();
   for (int i = 0; i < type.field_count(); ++i) {
-    properties[type.field(i)->name()] = field_schema(*type.field(i));
-    if (is_required_field(*type.field(i))) required.push_back(type.field(i)->name());
+    const FieldDescriptor& field = *type.field(i);
+    properties[field.name()] = field_schema(field, use);
+    // An answer has every field but those that can be absent: json_of() prints zeros.
+    const bool is_required = use == Use::kAnswer ? !field.has_presence() : is_required_field(field);
+    if (is_required) required.push_back(field.name());
   }
   Json out = {{"type", "object"}, {"description", comments_.of(type.full_name())}};
   out["properties"] = std::move(properties);
-  // A read_mask may leave out any field of an answer, and a change any field of a resource.
-  if (!required.empty() && !answered_.contains(type.full_name())) out["required"] = required;
+  if (!required.empty()) out["required"] = std::move(required);
   return out;
 }
 
@@ -238,14 +246,46 @@ Json special_schema(const Descriptor& type) {
   return nullptr;
 }
 
-Json OpenApiDocument::message_reference(const Descriptor& type) {
+Json OpenApiDocument::message_reference(const Descriptor& type, Use use) {
   Json schema = special_schema(type);
-  const std::string name = schema.is_null() ? schema_name(type.full_name()) : type.name();
+  std::string name = schema.is_null() ? schema_name(type.full_name()) : type.name();
+  if (schema.is_null() && use == Use::kRequest && answered_.contains(type.full_name())) {
+    name += "Input";
+  }
   if (!schemas_.contains(name)) {
     schemas_[name] = schema;  // a message may contain itself
-    if (schema.is_null()) schema = message_schema(type);
+    if (schema.is_null()) schema = message_schema(type, use);
     schemas_[name] = std::move(schema);
   }
+  return reference("schemas", name);
+}
+
+/// The schema of the body of a route's request: of a whole request that without the fields of the
+/// path. One route of a method may have `parent` in its path and the other one not.
+Json OpenApiDocument::body_reference(const HttpRoutes::Route& route) {
+  const Descriptor& request = *route.method->descriptor->input_type();
+  if (route.body_field != "*") {
+    const Descriptor& resource = *request.FindFieldByName(route.body_field)->message_type();
+    Json schema = message_schema(resource, Use::kRequest);
+    if (route.verb != "PATCH" || !schema.contains("required")) {
+      return message_reference(resource, Use::kRequest);
+    }
+    schema.erase("required");  // a change states any of the fields
+    const std::string name = schema_name(resource.full_name()) + "Update";
+    schemas_[name] = std::move(schema);
+    return reference("schemas", name);
+  }
+  if (route.variables.empty()) return message_reference(request, Use::kRequest);
+  std::string name = schema_name(request.full_name());
+  Json schema = message_schema(request, Use::kRequest);
+  for (const HttpRoutes::Route::Variable& each : route.variables) {
+    if (each.field == "parent") name += "InProject";
+    schema["properties"].erase(each.field);
+    if (!schema.contains("required")) continue;
+    std::erase(schema["required"].get_ref<Json::array_t&>(), Json(each.field));
+    if (schema["required"].empty()) schema.erase("required");
+  }
+  schemas_[name] = std::move(schema);
   return reference("schemas", name);
 }
 
@@ -259,6 +299,30 @@ void OpenApiDocument::add_basic_schemas() {
                            {"type", "string"},
                            {"format", "int64"},
                            {"pattern", "^-?[0-9]{1,19}$"}};
+  const Json number_or_null = {{"anyOf", {{{"type", "number"}}, {{"type", "null"}}}}};
+  const Json whole_number = {{"type", "integer"}, {"format", "int64"}};
+  const Json columns = {{"type", "object"},
+                        {"description", "The values of each column, by its name; null: none."},
+                        {"additionalProperties", {{"type", "array"}, {"items", number_or_null}}}};
+  schemas_["PointColumns"] = {{"type", "object"},
+                              {"description", "The points of a simulation as columns."},
+                              {"properties", {{"columns", columns}}},
+                              {"required", {"columns"}}};
+  schemas_["RowColumns"] = {
+      {"type", "object"},
+      {"description",
+       "Rows of a history or a campaign as columns, with the members of HistorySchema."},
+      {"properties",
+       {{"start_row", whole_number},
+        {"row_count", whole_number},
+        {"total_rows", whole_number},
+        {"rows_per_pair", whole_number},
+        {"units",
+         {{"type", "object"},
+          {"description", "The symbol of the unit of each column, by its name."},
+          {"additionalProperties", {{"type", "string"}}}}},
+        {"columns", columns}}},
+      {"required", {"start_row", "row_count", "total_rows", "rows_per_pair", "units", "columns"}}};
   std::string reasons =
       "google.rpc.ErrorInfo with the reason of the error; google.rpc.BadRequest with the "
       "violations, field and sentence each; google.rpc.RetryInfo. Reasons:";
@@ -319,7 +383,7 @@ void OpenApiDocument::add_query(const Descriptor& type, const std::string& prefi
       if (!field.is_repeated()) add_query(*message, path + ".", route, parameters);
       continue;
     }
-    Json schema = field_schema(field);
+    Json schema = field_schema(field, Use::kRequest);
     const std::string description = schema.value("description", "");
     schema.erase("description");
     parameters.push_back(
@@ -392,14 +456,14 @@ Json OpenApiDocument::answer_of(const HttpRoutes::Route& route) {
     type = type.substr(0, type.find(';'));
     Json schema = {{"type", "string"}};
     if (form == Form::kMessage || form == Form::kEvents) {  // an event's data is a message
-      schema = message_reference(*route.method->descriptor->output_type());
+      schema = message_reference(*route.method->descriptor->output_type(), Use::kAnswer);
+    } else if (form == Form::kPointColumns) {
+      schema = reference("schemas", "PointColumns");
     } else if (form == Form::kColumns) {
-      schema = {{"type", "object"}, {"additionalProperties", true}};
-      if (content.contains(type)) {  // the form of a message as well
-        schema = {{"anyOf", {content[type]["schema"], schema}}};
-      }
+      schema = reference("schemas", "RowColumns");
     } else if (form == Form::kLines) {  // a line
-      const Json message = message_reference(*route.method->descriptor->output_type());
+      const Json message =
+          message_reference(*route.method->descriptor->output_type(), Use::kAnswer);
       schema = {{"type", "object"},
                 {"properties",
                  {{"result", message}, {"error", reference("schemas", "Error/properties/error")}}}};
@@ -462,13 +526,12 @@ void OpenApiDocument::add(const HttpRoutes::Route& route, bool is_additional) {
     operation["parameters"] = std::move(parameters);
   }
   if (!route.body_field.empty()) {
-    const Descriptor& request = *method.input_type();
-    const Descriptor& body = route.body_field == "*"
-                                 ? request
-                                 : *request.FindFieldByName(route.body_field)->message_type();
-    operation["requestBody"] = {
-        {"required", true},
-        {"content", {{"application/json", {{"schema", message_reference(body)}}}}}};
+    const Json body = body_reference(route);
+    const std::string name = body["$ref"];
+    const bool is_required =
+        route.body_field != "*" || schemas_[name.substr(name.rfind('/') + 1)].contains("required");
+    operation["requestBody"] = {{"required", is_required},
+                                {"content", {{"application/json", {{"schema", body}}}}}};
   }
   operation["responses"] = responses_of(route);
   paths_[path][verb] = std::move(operation);

@@ -265,6 +265,60 @@ std::optional<Violation> append_body(const RouteMatch& route, const std::string&
   return std::nullopt;
 }
 
+/// Returns the texts that a serialised message has at a path such as "lubricant.name". Does not
+/// parse the rest, which may be long.
+std::vector<std::string> texts_at(std::string_view wire, const Descriptor& type,
+                                  std::string_view path) {
+  using google::protobuf::internal::WireFormatLite;
+  namespace io = google::protobuf::io;
+  const std::size_t dot = std::min(path.find('.'), path.size());
+  const FieldDescriptor& field = *type.FindFieldByName(std::string(path.substr(0, dot)));
+  io::CodedInputStream in(reinterpret_cast<const std::uint8_t*>(wire.data()),
+                          static_cast<int>(wire.size()));
+  std::vector<std::string> out;
+  while (const std::uint32_t tag = in.ReadTag()) {
+    if (WireFormatLite::GetTagFieldNumber(tag) != field.number()) {
+      if (!WireFormatLite::SkipField(&in, tag)) break;
+      continue;
+    }
+    std::uint32_t length = 0;
+    if (!in.ReadVarint32(&length)) break;
+    const std::string_view value =
+        wire.substr(static_cast<std::size_t>(in.CurrentPosition()), length);
+    if (!in.Skip(static_cast<int>(length))) break;
+    if (dot == path.size()) {
+      out.emplace_back(value);
+    } else {
+      for (std::string& each : texts_at(value, *field.message_type(), path.substr(dot + 1))) {
+        out.push_back(std::move(each));
+      }
+    }
+  }
+  return out;
+}
+
+/// Whether two names mean the same resource: one may lack "projects/default/".
+bool is_same_name(std::string_view one, std::string_view other) {
+  const auto first = split_name(one), second = split_name(other);
+  if (!first || !second) return one == other;
+  return first->project == second->project && first->relative == second->relative;
+}
+
+/// Adds a violation for each field of the path that the body gives another value.
+void check_repeated_fields(const RouteMatch& route, const std::string& wire,
+                           Violations& violations) {
+  for (const auto& [path, value] : route.of_path) {
+    for (const std::string& stated :
+         texts_at(wire, *route.method->descriptor->input_type(), path)) {
+      if (stated.empty() || is_same_name(stated, value)) continue;
+      violations.add(path,
+                     "is \"{}\" in the body and \"{}\" in the path; allowed: the same, or "
+                     "only in the path",
+                     plain_excerpt(stated), plain_excerpt(value));
+    }
+  }
+}
+
 /// A browser that connects again states the position of the last event that it has.
 void add_last_event_id(const RouteMatch& route, std::string_view header, Message& message,
                        Violations& violations) {
@@ -310,6 +364,7 @@ std::optional<google::rpc::Status> write_request(const RouteMatch& route,
     if (auto violation = append_body(route, request.body, out.wire)) {
       violations.push_back(*std::move(violation));
     }
+    check_repeated_fields(route, out.wire, violations);
   } else if (!request.body.empty()) {
     violations.add("", "this method takes no body");
   }
