@@ -8,13 +8,17 @@
 #include "core/study/warning_kinds.h"
 #include "core/uncertainty/spread.h"
 #include "server/application/campaign_decisions.h"
+#include "server/application/campaign_messages.h"
 #include "server/application/campaigns.h"
 #include "server/application/decision_table.h"
 #include "server/application/errors.h"
+#include "server/application/page_token.h"
+#include "server/application/paging.h"
 #include "server/contract/check_message.h"
 #include "server/simulation/candidate_uncertainty.h"
 #include "server/simulation/input_deviations.h"
 #include "server/storage/resource_lookup.h"
+#include "server/support/text.h"
 
 namespace tribodyn::server {
 namespace {
@@ -53,17 +57,17 @@ std::optional<v1::CandidateComparison> comparison(const std::vector<double>& dra
   return out;
 }
 
-/// Compares the best candidates with the first one, as many as the points allow. Throws Cancelled
-/// and Refusal.
+/// Compares the best candidates with the first one, as many as the points allow; of those before
+/// the place `first` none. Throws Cancelled and Refusal.
 Comparisons compare_best(Application& application, const v1::RankCandidatesRequest& request,
-                         const std::vector<std::size_t>& best, const DecisionTable& table,
-                         const CallContext& call) {
+                         const std::vector<std::size_t>& best, std::size_t first,
+                         const DecisionTable& table, const CallContext& call) {
   Comparisons out;
   const FoundFigure& figure = table.found(0);
   const StoredCampaign& stored = figure.source->stored;
   if (figure.column.kind != TableColumn::Kind::kStored || best.empty()) return out;
   const ConditionAggregate aggregate = DecisionTable::aggregate(figure);
-  CandidateDraws draws{request, best, figure.column.number, aggregate};
+  CandidateDraws draws{request, best, figure.column.number, aggregate, first};
   draws.candidates.resize(std::min(best.size(), kMaximumComparisonPoints / draws.points_of_each()));
   CampaignInputs inputs =
       stored_campaign_inputs(stored, application.store.candidate_table(stored.id, call.limits),
@@ -83,6 +87,46 @@ Comparisons compare_best(Application& application, const v1::RankCandidatesReque
   return out;
 }
 
+/// Where a page of a ranking begins, and what its ranking is of. A candidate whose rows are
+/// computed keeps its place among the others, so that as many candidates with as many missing ones
+/// are the same ranking.
+struct RankingPage {
+  std::size_t first = 0;
+  std::int64_t candidates = 0;
+  std::int64_t missing = 0;
+};
+
+/// What must not change between pages.
+std::string ranking_scope(const v1::RankCandidatesRequest& request, const CallContext& call) {
+  v1::RankCandidatesRequest same = request;
+  same.clear_page_token();
+  same.clear_count();
+  return call.project + "\n" + same.SerializeAsString();
+}
+
+/// Returns nullopt, and adds a violation, if the request has no token of a ranking.
+std::optional<RankingPage> requested_page(const std::string& key,
+                                          const v1::RankCandidatesRequest& request,
+                                          const CallContext& call, Violations& violations) {
+  if (request.page_token().empty()) return std::nullopt;
+  const auto token = parse_page_token(key, ranking_scope(request, call), request.page_token());
+  const auto* first = token ? std::get_if<std::int64_t>(&token->last.value) : nullptr;
+  const auto missing = token ? parse_number<std::int64_t>(token->last.name) : std::nullopt;
+  if (first == nullptr || !missing) {
+    add_bad_page_token(violations);
+    return std::nullopt;
+  }
+  return RankingPage{static_cast<std::size_t>(*first), token->total, *missing};
+}
+
+google::rpc::Status ranking_changed(const std::string& name) {
+  return aborted(v1::ERROR_REASON_RANKING_CHANGED, kCampaignType, name,
+                 "candidates of " + name +
+                     " were added or computed since the first page of the ranking; rank again "
+                     "without page_token, once the campaign has ended or is paused",
+                 false);
+}
+
 }  // namespace
 
 Outcome<v1::RankCandidatesResponse> rank_candidates(Application& application,
@@ -93,12 +137,20 @@ Outcome<v1::RankCandidatesResponse> rank_candidates(Application& application,
   Violations violations;
   check_message(request, "", violations);
   check_uncertainties(request, violations);
+  const auto asked = requested_page(application.page_token_key, request, call, violations);
   DecisionTable table(application, stored.message(), call);
   table.set_weights(request.condition_weights(), violations);
   table.add(request.objective(), "objective", violations);
   table.add(request.constraints(), violations);
   if (!violations.empty()) return invalid(violations);
   const CandidateSelection selection = table.read_all(request.constraints());
+  RankingPage page{0, stored.message().candidates, selection.missing};
+  if (asked) {
+    if (asked->candidates != page.candidates || asked->missing != page.missing) {
+      return ranking_changed(request.name());
+    }
+    page.first = asked->first;
+  }
   const CandidateValues& figure = table.figures().front();
   std::vector<std::size_t> best =
       ordered(selection.candidates, figure.values, request.objective().wants_most());
@@ -108,16 +160,17 @@ Outcome<v1::RankCandidatesResponse> rank_candidates(Application& application,
   });
   const auto withheld_count = static_cast<int>(best.end() - withheld);
   std::vector<std::size_t> decided(best.begin(), withheld);
-  best.resize(std::min(best.size(), static_cast<std::size_t>(
-                                        request.count() == 0 ? kDefaultCount : request.count())));
-  decided.resize(std::min(decided.size(), best.size()));
+  const std::size_t end = std::min(
+      best.size(), page.first + static_cast<std::size_t>(request.count() == 0 ? kDefaultCount
+                                                                              : request.count()));
+  decided.resize(std::min(decided.size(), end));
   try {
-    const Comparisons comparisons = compare_best(application, request, decided, table, call);
+    const Comparisons comparisons =
+        compare_best(application, request, decided, page.first, table, call);
     v1::RankCandidatesResponse out;
     out.set_withheld(withheld_count);
     out.set_draws(comparisons.drawn.draws);
     if (!table.is_of_rig()) out.set_not_included(kToothContactOnly);
-    table.add_warnings(best, *out.mutable_warnings());
     for (v1::RefusedCandidate& each : table.refused_candidates(kMostRefused)) {
       *out.add_refused_candidates() = std::move(each);
     }
@@ -130,7 +183,10 @@ Outcome<v1::RankCandidatesResponse> rank_candidates(Application& application,
     for (const std::string& each : comparisons.drawn.shared_inputs) {
       out.add_shared_uncertain_parameters(each);
     }
-    for (std::size_t i = 0; i < best.size(); ++i) {
+    std::vector<std::size_t> shown;
+    std::size_t bytes = 0;
+    for (std::size_t i = page.first; i < end && bytes < kMaximumPageBytes; ++i) {
+      shown.push_back(best[i]);
       v1::RankedCandidate& each = *out.add_candidates();
       each.set_candidate(static_cast<int>(best[i]));
       each.set_label(table.label(best[i]));
@@ -143,6 +199,13 @@ Outcome<v1::RankCandidatesResponse> rank_candidates(Application& application,
       if (i < comparisons.of.size() && comparisons.of[i]) {
         *each.mutable_comparison() = *comparisons.of[i];
       }
+      bytes += each.ByteSizeLong();
+    }
+    table.add_warnings(shown, *out.mutable_warnings());
+    if (const std::size_t next = page.first + shown.size(); next < best.size()) {
+      const PageStart last{static_cast<std::int64_t>(next), std::to_string(page.missing)};
+      out.set_next_page_token(page_token(application.page_token_key, ranking_scope(request, call),
+                                         {last, page.candidates}));
     }
     return out;
   } catch (const Cancelled&) {

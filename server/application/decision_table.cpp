@@ -195,7 +195,7 @@ std::vector<v1::RefusedCandidate> DecisionTable::refused_candidates(int most) {
 
 void DecisionTable::add_warnings(const std::vector<std::size_t>& candidates,
                                  google::protobuf::RepeatedPtrField<v1::CandidateWarning>& out) {
-  constexpr int kMostNamed = 1000;
+  constexpr int kMostNamed = 10'000;
   const StoredCampaign& stored = own_.stored;
   std::vector<bool> is_chosen(static_cast<std::size_t>(stored.candidates));
   for (const std::size_t each : candidates) is_chosen[each] = true;

@@ -225,7 +225,7 @@ constexpr Constraint kTable[] = {
      0, 100, "eq 14", "standard uncertainty"},
     {"ComparePointsRequest ExplainPointsRequest", "estimate_correlation", "", 0, 1,
      "correlation of estimates"},
-    {"RankCandidatesRequest", "count", "", 1, 1000, "answer limit", "", Zero::kUnset},
+    {"RankCandidatesRequest", "count", "", 1, 10000, "answer limit", "", Zero::kUnset},
     {"RankCandidatesRequest", "confidence", "", 0.5, 0.9999, "probability",
      "below one half no candidate is worse", Zero::kUnset},
     {"FindParetoCandidatesRequest", "beaten_count", "", 1, 10000, "answer limit", "", Zero::kUnset},

@@ -266,7 +266,8 @@ DrawnCandidates CandidateDraws::compute(CampaignInputs inputs, PreparedGearSets&
     const bool has_own = std::any_of(
         errors[i].begin(), errors[i].end(),
         [](const InputError& each) { return each.sharing != InputError::Sharing::kScene; });
-    if (!has_own && !is_asked) continue;
+    const bool is_skipped = i > 0 && i < first;
+    if (is_skipped || (!has_own && !is_asked)) continue;
     CandidateResources stated{*points.base.lubricant,
                               points.base.surface ? *points.base.surface : v1::Surface()};
     stated.set(points, static_cast<int>(candidates[i]));

@@ -51,6 +51,9 @@ struct CandidateDraws {
   std::vector<std::size_t> candidates;
   int column;  ///< of the figure (campaign_columns.h)
   const ConditionAggregate& aggregate;
+  /// Those between the best one and this place have no values; the draws of the others do not
+  /// depend on it.
+  std::size_t first = 0;
 
   /// Throws Cancelled once `is_over` returns true.
   DrawnCandidates compute(CampaignInputs inputs, PreparedGearSets& gear_sets,

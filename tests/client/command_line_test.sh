@@ -346,6 +346,10 @@ out_has '^ *1 +[0-9]+ +[0-9]+ +[0-9]+\.[0-9]+ +[0-9.e-]+ +the best ' 'all 5 cand
 expect 0 campaigns rank "$campaign" --count 3 --output csv
 out_lines 4
 out_is_csv
+expect 0 campaigns rank "$campaign" --count 0 --output csv
+out_lines 401
+expect 2 campaigns rank "$campaign" --count 100001
+err_has '100001.*100000'
 expect 0 campaigns pareto "$campaign" --least cost
 out_has ' cost'
 expect 1 campaigns pareto "$campaign" --most mesh_loss_power_watts --least cots

@@ -271,6 +271,66 @@ TEST_F(CandidateDecisions, RefusedAndMissingCandidatesAreCounted) {
   EXPECT_EQ(missing.ranked() + missing.missing(), 5000);
 }
 
+TEST_F(CandidateDecisions, PagesOfARankingAreTogetherTheRanking) {
+  v1::RankCandidatesRequest request = rank_request(create(table_of_candidates()));
+  v1::ParameterUncertainty& uncertainty = *request.add_uncertainties();
+  uncertainty.set_parameter(kAlphaColumn);
+  uncertainty.set_relative_uncertainty(0.02);
+  request.set_count(10'000);
+  const v1::RankCandidatesResponse whole = rank(request);
+  ASSERT_EQ(whole.candidates_size(), kCandidates);
+  EXPECT_EQ(whole.next_page_token(), "");
+  for (const int count : {1, 5, kCandidates}) {
+    v1::RankCandidatesResponse together;
+    request.set_count(count);
+    request.clear_page_token();
+    do {
+      const v1::RankCandidatesResponse page = rank(request);
+      EXPECT_LE(page.candidates_size(), request.count());
+      EXPECT_EQ(page.ranked(), kCandidates);
+      together.mutable_candidates()->MergeFrom(page.candidates());
+      together.set_compared(page.compared());
+      request.set_page_token(page.next_page_token());
+      request.set_count(count + together.candidates_size() % 2);  // pages may differ in length
+    } while (!request.page_token().empty());
+    ASSERT_EQ(together.candidates_size(), kCandidates) << count;
+    EXPECT_EQ(together.compared(), whole.compared());
+    for (int i = 0; i < kCandidates; ++i) {
+      EXPECT_EQ(together.candidates(i).SerializeAsString(), whole.candidates(i).SerializeAsString())
+          << "rank " << i << ", pages of " << count;
+    }
+  }
+}
+
+TEST_F(CandidateDecisions, APageOfAnotherRankingIsRefused) {
+  const v1::Campaign campaign = table_of_candidates();
+  v1::RankCandidatesRequest request = rank_request(create(campaign));
+  request.set_count(5);
+  request.set_page_token(rank(request).next_page_token());
+  v1::RankCandidatesRequest other = request;
+  other.set_confidence(0.5);
+  EXPECT_THAT(complaints(rank_candidates(application_, other).error()), HasSubstr("page_token"));
+  v1::AppendCandidatesRequest append;
+  append.set_name(request.name());
+  for (const v1::CandidateColumn& each : campaign.candidate_columns()) {
+    v1::CandidateColumn& column = *append.add_candidate_columns();
+    column.set_path(each.path());
+    column.add_values(each.values(0));
+  }
+  for (const v1::CandidateAttribute& each : campaign.candidate_attributes()) {
+    v1::CandidateAttribute& attribute = *append.add_candidate_attributes();
+    attribute.set_name(each.name());
+    if (each.texts_size() > 0) attribute.add_texts(each.texts(0));
+    if (each.values_size() > 0) attribute.add_values(each.values(0));
+  }
+  EXPECT_EQ(rank(request).candidates_size(), 5);
+  const auto appended = append_candidates(application_, append);
+  ASSERT_TRUE(appended.ok()) << complaints(appended.error());
+  const auto refused = rank_candidates(application_, request).error();
+  EXPECT_EQ(refused.code(), google::rpc::ABORTED);
+  EXPECT_THAT(refused.DebugString(), HasSubstr("RANKING_CHANGED"));
+}
+
 TEST_F(CandidateDecisions, NoOtherCandidateBeatsOneOfTheFrontAndOneBeatsEachOfTheOthers) {
   const v1::Campaign campaign = table_of_candidates();
   v1::FindParetoCandidatesRequest request;

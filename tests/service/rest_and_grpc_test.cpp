@@ -577,6 +577,7 @@ void RestAndGrpc::check_campaigns() {
   check("RankCandidates", R"(name: "campaigns/1" objective { wants_most: true } uncertainties {
       parameter: "surface.asperity_friction_coefficient" relative_uncertainty: 0.1 })");
   check("RankCandidates", "name: 'campaigns/1' count: -1", Code::INVALID_ARGUMENT);
+  check("RankCandidates", "name: 'campaigns/1' page_token: 'x'", Code::INVALID_ARGUMENT);
   check("FindParetoCandidates",
         "name: 'campaigns/1' second { figure { column: 'mesh_loss_power_watts' } }");
   check("FindParetoCandidates", "name: 'campaigns/1'", Code::INVALID_ARGUMENT);

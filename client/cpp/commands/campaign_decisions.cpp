@@ -135,9 +135,9 @@ Command rank_command() {
   request.set_confidence(0.95);
   add_objective_flags(command.flags, flags->objectives);
   add_selection_flags(command.flags, request);
-  command.flags.whole_number("--count,-n", {"candidates", "1 to 1000", "20"},
-                             "Candidates that are listed",
-                             [&request](int value) { request.set_count(value); });
+  command.flags.whole_number(
+      "--count,-n", {"candidates", "0 to 100000", "20"}, "Candidates that are listed; 0 = all",
+      [&request](int value) { request.set_count(value == 0 ? kMostCandidates : value); });
   const auto uncertainties = std::make_shared<std::vector<v1::ParameterUncertainty>>();
   add_uncertainty_flag(command.flags, *uncertainties);
   command.flags.number("--confidence", {"-", "0.5 to 0.9999", "0.95"},
@@ -148,6 +148,10 @@ Command rank_command() {
                        "Leave out the uncertainties that lubricant and surface state.",
                        [&request] { request.set_ignore_stated_uncertainties(true); });
   add_check(command, [flags](Complaints& complaints) {
+    const int count = flags->request.count();
+    if (count < 1 || count > kMostCandidates) {
+      complaints.push_back("--count = " + std::to_string(count) + "; allowed: 0 to 100000");
+    }
     if (flags->objectives.size() > 1) {
       complaints.emplace_back("give one --least or --most; `campaigns pareto` takes two");
     }

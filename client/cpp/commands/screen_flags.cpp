@@ -14,7 +14,6 @@ namespace tribodyn::client {
 namespace {
 
 constexpr int kMostPointsOfACampaign = 20'000'000;  // that the server takes
-constexpr int kMostCandidates = 100'000;            // likewise
 
 v1::CampaignBudget& budget_of(ScreenFlags& flags) {
   if (!flags.budget) flags.budget.emplace();

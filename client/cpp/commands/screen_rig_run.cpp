@@ -97,12 +97,11 @@ int run_rig_screen(const ScreenFlags& flags, Connection& connection, const Commo
                     [&file](const std::vector<std::string>& cells) { file << csv_line(cells); });
     });
   }
-  constexpr int kMostRanked = 1000;  // that the service returns
   const OutputFormat format = options.output_format;
   v1::RankCandidatesRequest ranking;
   ranking.set_name(campaign.name());
-  ranking.set_count(format == OutputFormat::kTable ? std::min(flags.top, kMostRanked)
-                                                   : kMostRanked);
+  ranking.set_count(format == OutputFormat::kTable ? std::min(flags.top, kMostCandidates)
+                                                   : kMostCandidates);
   *ranking.mutable_objective() =
       flags.rig.objectives.empty() ? usual_objective(campaign) : flags.rig.objectives.front();
   ranking.set_confidence(flags.confidence);

@@ -16,6 +16,31 @@ constexpr milliseconds kLatestLook(500);
 constexpr milliseconds kWhileLost(250);
 constexpr int kFollowRetries =
     20;  // about 40 s in all: long enough for a server that drains and restarts
+constexpr int kLargestRankingPage = 10'000;
+
+/// Puts the candidates of earlier pages of a ranking before those of `page`, and their warnings
+/// together.
+void add_earlier_pages(v1::RankCandidatesResponse earlier, v1::RankCandidatesResponse& page) {
+  earlier.mutable_candidates()->MergeFrom(page.candidates());
+  page.mutable_candidates()->Swap(earlier.mutable_candidates());
+  for (const v1::CandidateWarning& each : page.warnings()) {
+    auto& warnings = *earlier.mutable_warnings();
+    const auto known = std::find_if(warnings.begin(), warnings.end(), [&each](const auto& warning) {
+      return warning.code() == each.code();
+    });
+    if (known == warnings.end()) {
+      *warnings.Add() = each;
+      continue;
+    }
+    known->mutable_candidates()->MergeFrom(each.candidates());
+    const bool is_of_all = known->where().empty() || each.where().empty();
+    if (is_of_all) known->clear_where();
+    if (!is_of_all && known->where().find(each.where()) == std::string::npos) {
+      known->set_where(known->where() + "; " + each.where());
+    }
+  }
+  page.mutable_warnings()->Swap(earlier.mutable_warnings());
+}
 
 }  // namespace
 
@@ -147,8 +172,18 @@ void Connection::stream_campaign(const std::string& name, const CampaignRowsOpti
 }
 
 v1::RankCandidatesResponse Connection::rank_candidates(const v1::RankCandidatesRequest& request) {
-  return services_->call(*services_->campaigns, &v1::CampaignService::Stub::RankCandidates,
-                         request);
+  const int wanted = request.count();
+  v1::RankCandidatesRequest next = request;
+  v1::RankCandidatesResponse out;
+  do {
+    next.set_page_token(out.next_page_token());
+    next.set_count(std::min(wanted - out.candidates_size(), kLargestRankingPage));
+    auto page =
+        services_->call(*services_->campaigns, &v1::CampaignService::Stub::RankCandidates, next);
+    add_earlier_pages(std::move(out), page);
+    out = std::move(page);
+  } while (!out.next_page_token().empty() && out.candidates_size() < wanted);
+  return out;
 }
 
 v1::FindParetoCandidatesResponse Connection::find_pareto_candidates(

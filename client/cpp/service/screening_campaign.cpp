@@ -215,7 +215,7 @@ std::string attribute_text(const std::string& header) {
 
 v1::RankCandidatesResponse figures_ranking(Connection& connection,
                                            v1::RankCandidatesRequest request) {
-  request.set_count(1000);
+  request.set_count(10'000);
   request.clear_uncertainties();
   request.set_ignore_stated_uncertainties(true);
   return connection.rank_candidates(request);

@@ -10,7 +10,7 @@
 namespace tribodyn::client {
 
 /// Ranks the candidates of a campaign by their figures alone, which solves no points: what the
-/// service says of up to 1000 of them, such as their warnings and refusals.
+/// service says of up to 10,000 of them, such as their warnings and refusals.
 v1::RankCandidatesResponse figures_ranking(Connection& connection,
                                            v1::RankCandidatesRequest request);
 

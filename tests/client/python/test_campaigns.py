@@ -6,7 +6,7 @@ import pytest
 
 import tribodyn
 from test_connection import InThread, wait_until
-from tribodyn import aio
+from tribodyn import _decisions, aio
 from tribodyn._columns import read_columns
 from tribodyn.v1.campaigns_pb2 import ReadCampaignRequest
 
@@ -62,6 +62,18 @@ def test_a_campaign_is_a_table_of_candidates_at_conditions(client):
     assert means[0] == pytest.approx(0.75 * best.iloc[0] + 0.25 * best.iloc[1], rel=1e-12)
     with pytest.raises(tribodyn.TribodynError, match="mesh_loss"):
         campaign.frame(["mesh_loss"])
+
+
+def test_a_ranking_in_pages_is_the_ranking_at_once(client, monkeypatch):
+    campaign = client.screen(variants(40), FLUID)
+    campaign.wait()
+    at_once = campaign.ranking(count=None)
+    assert len(at_once) == 40 and sorted(at_once["candidate"]) == list(range(40))
+    monkeypatch.setattr(_decisions, "_LARGEST_PAGE", 7)
+    for count in (None, 7, 20):
+        in_pages = campaign.ranking(count=count)
+        assert len(in_pages) == (count or 40)
+        pandas.testing.assert_frame_equal(in_pages, at_once.head(len(in_pages)))
 
 
 def test_a_campaign_has_contact_figures_and_elasticities_on_request(client):

@@ -16,6 +16,9 @@ from tribodyn._warnings import level_word
 from tribodyn.units import Quantity
 from tribodyn.v1 import campaigns_pb2 as pb
 
+_MOST_CANDIDATES = 100_000  # of a campaign
+_LARGEST_PAGE = 10_000
+
 
 class Decisions(StoredCampaign):
     """Methods of a campaign that decide between its candidates."""
@@ -32,11 +35,12 @@ class Decisions(StoredCampaign):
         confidence: float = 0.95,
         estimate_correlation: float | None = None,
         draws: int = 0,
-        count: int = 1000,
+        count: int | None = 1000,
     ) -> Frame:
-        """Returns a table of the ``count`` best candidates (at most 1000), one a row, finished or not:
+        """Returns a table of the ``count`` best candidates (None: all), one a row, finished or not:
         those with least of the figure ``by`` first, or with most of it if ``most``. None: the mean
-        inefficiency, of a rig the traction coefficient.
+        inefficiency, of a rig the traction coefficient. More than 10,000 candidates are ranked in
+        pages: raises TribodynError RANKING_CHANGED if candidates are added or computed meanwhile.
 
         A figure is a column with values, alone for its mean over the conditions with their weights,
         or with ":min" or ":max": "film_ratio_minimum:min"; of another campaign with the same
@@ -69,7 +73,6 @@ class Decisions(StoredCampaign):
             constraints=_constraints(arguments, where),
             condition_weights=condition_weights,
             confidence=confidence,
-            count=count,
             ignore_stated_uncertainties=not stated_uncertainties,
             estimate_correlation=estimate_correlation,
             draws=draws,
@@ -77,8 +80,9 @@ class Decisions(StoredCampaign):
         for name, value in (uncertainties or {}).items():
             _add_uncertainty(arguments, name, value, request)
         arguments.check()
-        answer = await self._call("RankCandidates", request, patient=True)
-        found = answer.candidates
+        pages = await self._ranking_pages(request, _MOST_CANDIDATES if count is None else count)
+        answer = pages[-1]
+        found = [each for page in pages for each in page.candidates]
         cells: dict[str, Any] = {by: [each.value for each in found]}
         cells["solver_error"] = [
             each.solver_error if each.HasField("solver_error") else np.nan for each in found
@@ -98,15 +102,7 @@ class Decisions(StoredCampaign):
             "shared_uncertain_parameters": list(answer.shared_uncertain_parameters),
             "withheld": answer.withheld,
             "draws": answer.draws,
-            "warnings": {
-                each.code: {
-                    "level": level_word(each.level),
-                    "summary": each.summary,
-                    "candidates": list(each.candidates),
-                    "where": each.where,
-                }
-                for each in answer.warnings
-            },
+            "warnings": _joined_warnings(pages),
             "refused_candidates": frame(
                 in_columns(
                     {
@@ -122,6 +118,20 @@ class Decisions(StoredCampaign):
             "not_included": answer.not_included,
         }
         return await self._of_candidates([each.candidate for each in found], cells, attrs)
+
+    async def _ranking_pages(
+        self, request: pb.RankCandidatesRequest, count: int
+    ) -> list[pb.RankCandidatesResponse]:
+        """Returns the pages of a ranking that hold the `count` best candidates."""
+        pages: list[pb.RankCandidatesResponse] = []
+        missing = count
+        while True:
+            request.count = min(missing, _LARGEST_PAGE)
+            pages.append(await self._call("RankCandidates", request, patient=True))
+            missing -= len(pages[-1].candidates)
+            request.page_token = pages[-1].next_page_token
+            if not request.page_token or missing <= 0:
+                return pages
 
     async def pareto(
         self,
@@ -273,6 +283,27 @@ def _add_uncertainty(
         return
     for path, absolute in read_parameters(arguments, {name: value}).items():
         request.uncertainties.add(parameter=path, absolute_uncertainty=absolute)
+
+
+def _joined_warnings(pages: Sequence[pb.RankCandidatesResponse]) -> dict[str, dict[str, Any]]:
+    """Returns the warnings of all pages by code."""
+    out: dict[str, dict[str, Any]] = {}
+    for each in (warning for page in pages for warning in page.warnings):
+        joined = out.setdefault(
+            each.code,
+            {
+                "level": level_word(each.level),
+                "summary": each.summary,
+                "candidates": [],
+                "where": each.where,
+            },
+        )
+        joined["candidates"] += each.candidates
+        if not each.where or not joined["where"]:
+            joined["where"] = ""  # at all conditions
+        elif each.where not in joined["where"]:
+            joined["where"] += f"; {each.where}"
+    return out
 
 
 def _counts(answer: Any) -> dict[str, int]:

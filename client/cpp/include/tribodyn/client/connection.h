@@ -136,6 +136,9 @@ struct HistoryOptions {
   int maximum_points = 0;      ///< 0: all rows; else an overview where there are more
 };
 
+/// Most candidates of a campaign.
+inline constexpr int kMostCandidates = 100'000;
+
 /// Most points of one call of evaluate_points().
 inline constexpr int kMostPointsOfACall = 2000;
 
@@ -296,7 +299,9 @@ class Connection {
                        const std::function<void(const v1::HistorySchema&)>& on_schema,
                        const std::function<void(const HistoryRows&)>& on_rows);
 
-  /// Returns the best candidates of a campaign and marks those that tie with the best one.
+  /// Returns the `count` best candidates of a campaign and marks those that tie with the best one.
+  /// kMostCandidates means all. Makes a call for each 10,000. Throws ServiceError RANKING_CHANGED
+  /// if candidates are added or computed between two of these calls.
   v1::RankCandidatesResponse rank_candidates(const v1::RankCandidatesRequest& request);
   /// Returns the candidates that no other one beats in both of two objectives.
   v1::FindParetoCandidatesResponse find_pareto_candidates(
