@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -11,6 +12,9 @@
 namespace tribodyn::server {
 
 inline constexpr int kMaximumCandidates = 100'000;
+/// Of the columns and attributes of all candidates [bytes]: 30 columns take 24 MB. An answer with
+/// the view FULL holds them.
+inline constexpr std::size_t kMaximumCandidateBytes = 32 << 20;
 /// Largest number of lubricants that are candidates. Reading them takes half a second.
 inline constexpr int kMaximumCandidateLubricants = 5000;
 

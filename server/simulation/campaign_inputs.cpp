@@ -379,6 +379,19 @@ std::optional<CampaignInputs> check_campaign(v1::Campaign request, const Resourc
   return out;
 }
 
+/// Adds a violation if the candidates take more than kMaximumCandidateBytes.
+void check_size(const CampaignInputs& inputs, const std::string& path, Violations& violations) {
+  const std::size_t bytes = inputs.table.ByteSizeLong();
+  if (bytes <= kMaximumCandidateBytes) return;
+  const auto candidates = static_cast<std::size_t>(inputs.points.candidates);
+  violations.add(join_path(path, has_made_columns(inputs.requested) ? "candidate_attributes"
+                                                                    : "candidate_columns"),
+                 "{} candidates take {} bytes with their attributes; allowed: {} bytes in one "
+                 "campaign, which {} such candidates take; make several",
+                 candidates, bytes, kMaximumCandidateBytes,
+                 candidates * kMaximumCandidateBytes / bytes);
+}
+
 }  // namespace
 
 std::optional<CampaignInputs> read_campaign(v1::Campaign request, const ResourceLookup& lookup,
@@ -402,8 +415,11 @@ std::optional<CampaignInputs> read_campaign(v1::Campaign request, const Resource
   for (Violation& each : rest) {
     if (!fields.contains(each.field)) violations.push_back(std::move(each));
   }
-  if (!found.empty()) return std::nullopt;
-  if (out) out->input_hash = hash_of(*out);
+  if (!found.empty() || !out) return std::nullopt;
+  const std::size_t before = violations.size();
+  check_size(*out, path, violations);
+  if (violations.size() > before) return std::nullopt;
+  out->input_hash = hash_of(*out);
   return out;
 }
 
@@ -442,7 +458,8 @@ std::optional<AppendedCandidates> read_appended(const StoredCampaign& stored,
   v1::Campaign whole = campaign;
   whole.MergeFrom(joined_candidates(std::move(present), std::move(further)));
   auto all = check_campaign(std::move(whole), accepted, "", violations);
-  if (!all) return std::nullopt;
+  if (all) check_size(*all, "", violations);
+  if (!all || violations.size() > before) return std::nullopt;
   out.all = std::move(*all);
   out.all.input_hash = hash_of(out.all);
   return out;

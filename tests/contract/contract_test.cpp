@@ -21,6 +21,7 @@
 #include "server/resources/gear_set_checks.h"
 #include "server/resources/imports/csv_table.h"
 #include "server/resources/imports/read_profiles.h"
+#include "server/simulation/campaign_candidates.h"
 #include "server/simulation/cycle_evaluation.h"
 #include "tests/contract/breaking_changes.h"
 #include "tests/contract/lint.h"
@@ -171,8 +172,22 @@ TEST(Contract, LeavesRoomForTheAnswerThatHoldsAGearSet) {
     const auto* method = DescriptorPool::generated_pool()->FindMethodByName(
         "tribodyn.v1.GearSetService." + std::string(each));
     ASSERT_NE(method, nullptr);
-    EXPECT_EQ(server::maximum_request_bytes(*method), server::kMaximumResponseBytes - (1 << 20));
+    EXPECT_LE(server::maximum_request_bytes(*method), server::kMaximumResponseBytes - (1 << 20));
   }
+}
+
+TEST(Contract, LeavesRoomForTheCandidatesOfTheLargestCampaignInRequestAndAnswer) {
+  for (const char* each : {"CreateCampaign", "AppendCandidates"}) {
+    const auto* method = DescriptorPool::generated_pool()->FindMethodByName(
+        "tribodyn.v1.CampaignService." + std::string(each));
+    ASSERT_NE(method, nullptr);
+    EXPECT_EQ(server::maximum_request_bytes(*method), server::kMaximumCandidateBytes);
+  }
+  const int columns = field("Campaign", "candidate_columns").options().GetExtension(v1::max_items);
+  constexpr std::size_t kNameBytes = 80;
+  EXPECT_LE(server::kMaximumCandidates * (columns * sizeof(double) + kNameBytes + 2),
+            server::kMaximumCandidateBytes);
+  EXPECT_LE(server::kMaximumCandidateBytes + (1 << 20), server::kMaximumResponseBytes);
 }
 
 TEST(EnumNames, AreShortForPeople) {

@@ -344,6 +344,68 @@ TEST_F(CandidatesTest, AppendedRowsFollowThoseThatAreThereAndHaveTheSameBits) {
   EXPECT_THAT(check_database(bench_.database()), IsEmpty());
 }
 
+/// A campaign of the most candidates and columns: one of the model and 29 of values that ride
+/// along.
+v1::Campaign largest_campaign() {
+  v1::Campaign out = campaign_of(1);
+  const v1::CandidateColumn first = out.candidate_columns(0);
+  out.clear_candidate_columns();
+  out.clear_candidate_attributes();
+  v1::CandidateColumn& column = *out.add_candidate_columns();
+  column.set_path(first.path());
+  column.mutable_values()->Resize(kMaximumCandidates, first.values(0));
+  for (int i = 0; i < 29; ++i) {
+    v1::CandidateAttribute& attribute = *out.add_candidate_attributes();
+    attribute.set_name("x" + std::to_string(i));
+    attribute.mutable_values()->Resize(kMaximumCandidates, i);
+  }
+  return out;
+}
+
+TEST_F(CandidatesTest, ThoseOfTheLargestTableFitAndLongerOnesAreRefusedWithTheNumberThatFits) {
+  Application application = bench_.application();
+  v1::CreateCampaignRequest request;
+  request.set_validate_only(true);
+  *request.mutable_campaign() = largest_campaign();
+  v1::CandidateAttribute& names = *request.mutable_campaign()->add_candidate_attributes();
+  names.set_name("name");
+  for (int i = 0; i < kMaximumCandidates; ++i) names.add_texts(std::string(80, 'x'));
+  const auto accepted = create_campaign(application, request);
+  ASSERT_TRUE(accepted.ok()) << complaints(accepted.error());
+  EXPECT_EQ(accepted.message().candidates(), kMaximumCandidates);
+  EXPECT_LE(request.ByteSizeLong(), kMaximumCandidateBytes);
+  for (std::string& each : *names.mutable_texts()) each.resize(200);
+  const std::string refused = complaints(create_campaign(application, request).error());
+  EXPECT_THAT(refused, HasSubstr("campaign.candidate_columns"));
+  const std::size_t fit =
+      kMaximumCandidates * kMaximumCandidateBytes / request.campaign().ByteSizeLong();
+  EXPECT_THAT(refused, HasSubstr(" " + std::to_string(fit).substr(0, 3)));
+}
+
+TEST_F(CandidatesTest, ThoseThatAreAddedMayNotMakeTheTableTooLong) {
+  constexpr int kFurther = kMaximumCandidates - 1;
+  v1::Campaign campaign = campaign_of(1);
+  v1::CandidateAttribute& remark = *campaign.add_candidate_attributes();
+  remark.set_name("remark");
+  remark.add_texts("");
+  const std::string name = create(campaign);
+  v1::AppendCandidatesRequest request;
+  for (const v1::CandidateColumn& each : campaign.candidate_columns()) {
+    v1::CandidateColumn& column = *request.add_candidate_columns() = each;
+    column.mutable_values()->Resize(kFurther, each.values(0));
+  }
+  for (const v1::CandidateAttribute& each : campaign.candidate_attributes()) {
+    v1::CandidateAttribute& attribute = *request.add_candidate_attributes();
+    attribute.set_name(each.name());
+    if (!each.values().empty()) attribute.mutable_values()->Resize(kFurther, 1);
+    for (int i = 0; i < kFurther && each.values().empty(); ++i) {
+      attribute.add_texts(std::string(200, 'x'));
+    }
+  }
+  EXPECT_THAT(complaints(append(name, request).error()), HasSubstr("candidate_columns"));
+  EXPECT_EQ(get(name).candidates(), 1);
+}
+
 TEST_F(CandidatesTest, CandidatesAreAddedWhileTheCampaignRuns) {
   const std::string name = create(first_of(kThousand, 100));
   for (int i = 100; i + 100 <= kThousand; i += 100) {

@@ -1,8 +1,11 @@
+#include <google/protobuf/descriptor.h>
+
 #include <algorithm>
 #include <chrono>
 
 #include "client/cpp/library/column_stream.h"
 #include "client/cpp/library/services.h"
+#include "tribodyn/v1/limits.pb.h"
 
 namespace tribodyn::client {
 namespace {
@@ -17,6 +20,32 @@ constexpr milliseconds kWhileLost(250);
 constexpr int kFollowRetries =
     20;  // about 40 s in all: long enough for a server that drains and restarts
 constexpr int kLargestRankingPage = 10'000;
+
+/// Throws ServiceError, as the server would, if the request takes more bytes than its method
+/// allows: before it is sent. States how many such candidates do not.
+template <class Request, class Candidates>
+void check_size(const Request& request, const Candidates& candidates, const char* method,
+                const std::string& field) {
+  const auto* service = request.GetDescriptor()->file()->FindServiceByName("CampaignService");
+  const auto limit = static_cast<std::size_t>(
+      service->FindMethodByName(method)->options().GetExtension(v1::max_request_bytes));
+  const std::size_t bytes = request.ByteSizeLong();
+  if (bytes <= limit) return;
+  std::size_t count = 0;
+  for (const v1::CandidateColumn& each : candidates.candidate_columns()) {
+    count = std::max(count, static_cast<std::size_t>(each.values_size()));
+  }
+  for (const v1::CandidateAttribute& each : candidates.candidate_attributes()) {
+    count = std::max(count, static_cast<std::size_t>(each.values_size() + each.texts_size()));
+  }
+  const std::string text = std::to_string(count) + " candidates take " + std::to_string(bytes) +
+                           " bytes with their attributes; allowed: " + std::to_string(limit) +
+                           " bytes, which " + std::to_string(count * limit / bytes) +
+                           " such candidates take; make several campaigns";
+  throw ServiceError("1 invalid value [INVALID_FIELDS]\n  " + field + ": " + text,
+                     grpc::StatusCode::INVALID_ARGUMENT, "INVALID_FIELDS", {{field, text}},
+                     std::nullopt);
+}
 
 /// Puts the candidates of earlier pages of a ranking before those of `page`, and their warnings
 /// together.
@@ -55,6 +84,7 @@ v1::Campaign Connection::create_campaign(const v1::Campaign& campaign,
   *request.mutable_campaign() = campaign;
   request.set_validate_only(options.validate_only);
   request.set_request_id(options.request_id.empty() ? new_request_id() : options.request_id);
+  check_size(request, campaign, "CreateCampaign", "campaign.candidate_columns");
   return services_->call(*services_->campaigns, &v1::CampaignService::Stub::CreateCampaign,
                          request);
 }
@@ -98,6 +128,7 @@ v1::Campaign Connection::update_campaign(const v1::Campaign& campaign,
 
 v1::Campaign Connection::append_candidates(v1::AppendCandidatesRequest request) {
   if (request.request_id().empty()) request.set_request_id(new_request_id());
+  check_size(request, request, "AppendCandidates", "candidate_columns");
   return services_->call(*services_->campaigns, &v1::CampaignService::Stub::AppendCandidates,
                          request);
 }

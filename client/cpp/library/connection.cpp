@@ -103,8 +103,8 @@ Connection::Connection(std::string address, std::chrono::duration<double> timeou
   // http_proxy is for web sites; a server on loopback or in the local network is not behind it.
   arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 200);
-  // As large as the server sends: a gear set may take 15 MiB.
-  arguments.SetMaxReceiveMessageSize(16 << 20);
+  // As large as the server sends: the candidates of a campaign may take 32 MiB.
+  arguments.SetMaxReceiveMessageSize(33 << 20);
   services_->address = std::move(address);
   services_->timeout = timeout;
   services_->project = std::move(project);

@@ -1,4 +1,6 @@
 import asyncio
+import os
+from pathlib import Path
 
 import numpy as np
 import pandas
@@ -8,6 +10,7 @@ import tribodyn
 from test_connection import InThread, wait_until
 from tribodyn import _decisions, aio
 from tribodyn._columns import read_columns
+from tribodyn._stored_campaign import MOST_BYTES
 from tribodyn.v1.campaigns_pb2 import ReadCampaignRequest
 
 FLUID = "paper-fluid-1"
@@ -74,6 +77,17 @@ def test_a_ranking_in_pages_is_the_ranking_at_once(client, monkeypatch):
         in_pages = campaign.ranking(count=count)
         assert len(in_pages) == (count or 40)
         pandas.testing.assert_frame_equal(in_pages, at_once.head(len(in_pages)))
+
+
+def test_candidates_that_do_not_fit_one_campaign_are_refused_before_they_are_sent(client):
+    campaign = client.screen(variants(2), FLUID)
+    long = pandas.DataFrame({"name": ["v"], "treat rate": [1.0], "remark": ["x" * (33 << 20)]})
+    with pytest.raises(tribodyn.TribodynError) as refused:
+        campaign.append(long)
+    assert [each.field for each in refused.value.violations] == ["table"]
+    assert refused.value.code == "", "nothing was sent"
+    contract = Path(os.environ["TRIBODYN_TREE"], "proto/tribodyn/v1/campaigns.proto").read_text()
+    assert contract.count(f"(max_request_bytes) = {MOST_BYTES};") == 2
 
 
 def test_a_campaign_has_contact_figures_and_elasticities_on_request(client):

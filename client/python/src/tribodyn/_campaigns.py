@@ -18,7 +18,7 @@ from tribodyn._enums import enum_word
 from tribodyn._frames import Frame, frame
 from tribodyn._parameters import read_parameters
 from tribodyn._progress import Progress
-from tribodyn._stored_campaign import SERVICE
+from tribodyn._stored_campaign import SERVICE, check_size
 from tribodyn._transport import Backoff, new_request_id
 from tribodyn.errors import TribodynError
 from tribodyn.v1 import campaigns_pb2 as pb
@@ -155,6 +155,7 @@ class AsyncCampaign(Decisions):
             add_attributes(part, rows, texts)
             request.candidate_columns.extend(part.candidate_columns)
             request.candidate_attributes.extend(part.candidate_attributes)
+        check_size(request, request, "table")
         await self._change("AppendCandidates", request, patient=True)
         self._details = None
 

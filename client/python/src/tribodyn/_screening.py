@@ -11,11 +11,11 @@ from tribodyn._candidate_columns import add_attributes, add_candidates
 from tribodyn._candidates import Design, Lubricants, Rig
 from tribodyn._carried import check_carried
 from tribodyn._csv import table_rows
-from tribodyn._figures import FigureChoice
 from tribodyn._evaluate import INPUTS
+from tribodyn._figures import FigureChoice
 from tribodyn._parameters import is_parameter, read_parameters
 from tribodyn._session import Session
-from tribodyn._stored_campaign import SERVICE
+from tribodyn._stored_campaign import MOST_CANDIDATES, SERVICE, check_size
 from tribodyn._transport import Transport
 from tribodyn.errors import TribodynError
 from tribodyn.units import Quantity
@@ -65,7 +65,8 @@ class Screening(Session):
     ) -> AsyncCampaign:
         """Screens candidates, one a row, at every speed and sump temperature (None: 60 km/h and
         40 C), and returns the campaign at once. The server computes and keeps it: up to 100,000
-        candidates and 20 million points.
+        candidates and 20 million points; candidates may take 32 MiB, 8 bytes a number, which 100,000
+        with 30 parameters do.
 
         ``table`` is as of points(). A column "lubricant.FIELD" or "surface.FIELD" states what
         candidates have in place of the parameter of ``lubricant`` or ``surface``, as of evaluate();
@@ -120,6 +121,9 @@ class Screening(Session):
             )
         is_made = isinstance(table, (Design, Lubricants))
         rows = [] if is_made else table_rows(table)
+        if len(rows) > MOST_CANDIDATES:
+            arguments.wrong("table", f"{len(rows)} rows; allowed: at most {MOST_CANDIDATES}")
+            arguments.check()
         headers = dict.fromkeys(name for row in rows for name in row)
         parameters = [name for name in headers if is_parameter(name)]
         check_carried(headers, parameters, INPUTS, carry)
@@ -158,6 +162,7 @@ class Screening(Session):
         request = pb.CreateCampaignRequest(
             campaign=campaign, request_id=request_id or _request_id(campaign, beside)
         )
+        check_size(request, campaign, "table")
         try:
             return await self._call(SERVICE, "CreateCampaign", request, patient=True)
         except TribodynError as error:

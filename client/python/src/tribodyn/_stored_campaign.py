@@ -9,9 +9,33 @@ import numpy as np
 from tribodyn._candidate_columns import CandidateColumns
 from tribodyn._frames import Frame, frame
 from tribodyn._transport import Transport
+from tribodyn.errors import invalid_fields, violation
 from tribodyn.v1 import campaigns_pb2 as pb
 
 SERVICE = "CampaignService"
+MOST_BYTES = 32 << 20  # of a request with candidates, as the contract states it
+MOST_CANDIDATES = 100_000
+
+
+def check_size(request: Any, candidates: Any, field: str) -> None:
+    """Raises, as the server would, if a request with candidates takes too many bytes: before it is
+    sent. States how many such candidates do not. `candidates`: the message that has them."""
+    size = request.ByteSize()
+    if size <= MOST_BYTES:
+        return
+    columns = [each.values for each in candidates.candidate_columns]
+    columns += [each.texts or each.values for each in candidates.candidate_attributes]
+    count = max(map(len, columns), default=0)
+    raise invalid_fields(
+        [
+            violation(
+                field,
+                f"{count} candidates take {size} bytes with their attributes; allowed: "
+                f"{MOST_BYTES} bytes, which {count * MOST_BYTES // size} such candidates take; make "
+                "several campaigns",
+            )
+        ]
+    )
 
 
 class StoredCampaign:

@@ -24,8 +24,8 @@ _OPTIONS = (
     ("grpc.enable_http_proxy", 0),
     ("grpc.initial_reconnect_backoff_ms", 200),
     ("grpc.max_reconnect_backoff_ms", 2000),
-    # As large as the server sends: a gear set may take 15 MiB.
-    ("grpc.max_receive_message_length", 16 << 20),
+    # As large as the server sends: the candidates of a campaign may take 32 MiB.
+    ("grpc.max_receive_message_length", 33 << 20),
 )
 # Reasons of a failure amid the work, which may have had its effect.
 _AMID_WORK = ("STORE_FAILED", "OUT_OF_MEMORY")
