@@ -14,6 +14,7 @@
 
 #include "google/api/annotations.pb.h"
 #include "google/rpc/code.pb.h"
+#include "server/application/campaigns.h"
 #include "server/application/errors.h"
 #include "server/application/request_limits.h"
 #include "server/contract/resource_names.h"
@@ -223,6 +224,29 @@ TEST_F(RestTest, TextThatIsNotUtf8IsRefusedByTheNameOfItsField) {
   EXPECT_EQ(
       send("GET", "/v1/lubricants?filter=display_name:%22%C3%A9%E2%82%AC%F0%9F%98%80%22").status,
       200);
+}
+
+TEST_F(RestTest, AnAnswerThatIsTooLongForJsonIsRefusedUntilAReadMaskShortensIt) {
+  v1::CreateCampaignRequest create;
+  v1::Campaign& campaign = *create.mutable_campaign();
+  campaign.set_lubricant("lubricants/paper-fluid-1");
+  campaign.add_conditions()->set_speed_kilometres_per_hour(60);
+  campaign.mutable_budget()->set_points(1);
+  for (int i = 0; i < 22; ++i) {
+    v1::CandidateAttribute& attribute = *campaign.add_candidate_attributes();
+    attribute.set_name("x" + std::to_string(i));
+    attribute.mutable_values()->Resize(100'000, i);
+  }
+  v1::CandidateColumn& column = *campaign.add_candidate_columns();
+  column.set_path("surface.asperity_friction_coefficient");
+  column.mutable_values()->Resize(100'000, 0.1);
+  const auto created = create_campaign(app_, create);
+  ASSERT_TRUE(created.ok()) << complaints(created.error());
+  const std::string target = "/v1/" + created.message().name() + "?view=CAMPAIGN_VIEW_FULL";
+  const HttpResponse whole = send("GET", target);
+  EXPECT_EQ(whole.status, 400);
+  EXPECT_TRUE(violations(whole).contains("read_mask"));
+  EXPECT_EQ(send("GET", target + "&read_mask=candidate_columns").status, 200);
 }
 
 TEST_F(RestTest, OnlyAReadMaskThatNamesFieldsLeavesOutZeros) {
