@@ -108,6 +108,9 @@ EveryMethod::Server* EveryMethod::server_ = nullptr;
 EveryMethod::Server* EveryMethod::hasty_server_ = nullptr;
 
 TEST_P(EveryMethod, IsServedAndChecksAnEmptyRequest) {
+  if (GetParam()->name() == "WatchSimulations") {
+    GTEST_SKIP() << "an empty request means all simulations, and its stream does not end";
+  }
   const Answer answer = call(*request());
   if (is_list() && !has("name")) {
     EXPECT_TRUE(answer.status.ok()) << "an empty list request means the first page";
