@@ -595,7 +595,7 @@ TEST_F(CandidatesTest, NameAndLabelsChangeWhateverTheState) {
   request.mutable_update_mask()->set_paths(0, "tolerance");
   EXPECT_THAT(complaints(update_campaign(application, request).error()),
               HasSubstr("update_mask: \"tolerance\" cannot be changed; allowed: display_name, "
-                        "labels, *"));
+                        "labels, condition_weights, candidate_attributes, *"));
   EXPECT_THROW(names("labels.project > axle"), std::runtime_error);
   EXPECT_THROW(names("stat = x"), std::runtime_error);
   EXPECT_THROW(names("input_hash > a"), std::runtime_error);

@@ -5,6 +5,7 @@
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <functional>
@@ -72,20 +73,21 @@ class QuotaCall : public UnaryCall, public StreamCall {
   std::promise<google::rpc::Status> answer_;
 };
 
-/// The quota that a refusal names; "" if it is no refusal by a quota, or has no retry delay.
+/// The quota that a refusal names; "" if it is no refusal by a quota.
 std::string quota_of(const google::rpc::Status& status) {
   google::rpc::ErrorInfo info;
-  google::rpc::RetryInfo retry;
-  bool has_delay = false;
-  std::string out;
   for (const auto& detail : status.details()) {
-    has_delay = has_delay || detail.UnpackTo(&retry);
-    if (detail.UnpackTo(&info) && info.reason() == "QUOTA_EXCEEDED") {
-      out = info.metadata().at("quota");
+    if (detail.UnpackTo(&info) && info.reason() == "QUOTA_EXCEEDED" &&
+        status.code() == google::rpc::RESOURCE_EXHAUSTED) {
+      return info.metadata().at("quota");
     }
   }
-  const bool is_whole = status.code() == google::rpc::RESOURCE_EXHAUSTED && has_delay;
-  return is_whole ? out : "";
+  return "";
+}
+
+bool names_delay(const google::rpc::Status& status) {
+  return std::any_of(status.details().begin(), status.details().end(),
+                     [](const auto& each) { return each.template Is<google::rpc::RetryInfo>(); });
 }
 
 TEST(Allowance, LetsCallsOfFiveSecondsComeAtOnceAndThenAsManyASecondAsStated) {
@@ -212,10 +214,6 @@ TEST_F(QuotaTest, SimulationsBeyondTheProcessorHoursAreRefusedWhileOthersWaitAnd
 }
 
 TEST_F(QuotaTest, ARefusalNamesADelayOnlyIfWaitingHelps) {
-  const auto names_delay = [](const google::rpc::Status& status) {
-    return std::any_of(status.details().begin(), status.details().end(),
-                       [](const auto& each) { return each.template Is<google::rpc::RetryInfo>(); });
-  };
   EXPECT_EQ(answer(create(long_simulation()), "usual").code(), google::rpc::OK);
   const double hours = bench_.store().unfinished_seconds("default") / 3600;
   app_.project_quotas = std::make_shared<ProjectQuotas>(Quota{.processor_hours = 1.5 * hours});
