@@ -1,6 +1,8 @@
 import asyncio
 import os
 import re
+import resource
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -275,6 +277,26 @@ def test_rows_are_followed_over_a_pause_and_the_death_of_the_server(new_server):
     )
     late = list(again.follow(["candidate"], start_row=39990))
     assert [len(each) for each in late] == [10]
+
+
+def test_a_stalled_campaign_says_so_and_ends_when_there_is_room(new_server):
+    server = new_server()
+    client = tribodyn.Client(server.address)
+    campaign = client.screen(variants(2000), FLUID, speeds_kilometres_per_hour=range(20, 60))
+    log = (server.folder / "db.sqlite-wal").stat().st_size
+    # Writes beyond the limit fail as on a full disk.
+    resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, (log, resource.RLIM_INFINITY))
+    wait_until(lambda: campaign.refresh().HasField("stalled"))
+    assert campaign.state == "stalled" and campaign.reason and campaign.reason in repr(campaign)
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("always")
+        waiting = InThread(campaign.wait)
+        wait_until(lambda: any(campaign.reason in str(each.message) for each in heard))
+    resource.prlimit(
+        server.process.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
+    )
+    waiting.result()
+    assert campaign.state == "succeeded" and campaign.message.points_done == 80000
 
 
 def test_a_cancelled_campaign_is_an_error_with_that_reason(client):

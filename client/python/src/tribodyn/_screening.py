@@ -236,7 +236,7 @@ async def _go_on(
 ) -> None:
     """Resumes a campaign that is paused, and sets the budget of one that runs."""
     has_budget = budget_points is not None or budget_processor_seconds is not None
-    if campaign.state != "paused" and not (campaign.state == "running" and has_budget):
+    if campaign.state != "paused" and not (campaign.state in ("running", "stalled") and has_budget):
         return
     try:
         await campaign.resume(

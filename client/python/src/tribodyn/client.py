@@ -113,9 +113,17 @@ class Campaign(Blocking):
 
     @property
     def state(self) -> str:
-        """The state when the server last answered: "running", "paused", "succeeded", "failed" or
-        "cancelled"."""
+        """The state when the server last answered: "running", "paused", "succeeded", "failed",
+        "cancelled", or "stalled": it runs, but the server cannot write its rows."""
         return self._awaited.state
+
+    @property
+    def reason(self) -> str:
+        """Why it is stalled, paused or failed, for people; "" if it is none of these."""
+        return self._awaited.reason
+
+    def __repr__(self) -> str:
+        return repr(self._awaited)
 
     @property
     def message(self) -> CampaignMessage:
