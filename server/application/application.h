@@ -10,12 +10,16 @@
 #include "server/application/audit_log.h"
 #include "server/application/authorizer.h"
 #include "server/application/quota.h"
+#include "server/application/shared_places.h"
 #include "server/execution/simulation_jobs.h"
 #include "server/simulation/prepared_gear_sets.h"
 #include "server/storage/store.h"
 #include "server/support/processor_slots.h"
 
 namespace tribodyn::server {
+
+/// Watches without names. Each commit wakes all of them, at about a microsecond each.
+inline constexpr std::size_t kMostProjectWatches = 200;
 
 /// The objects that every use case works on. Safe for concurrent access, as all members are.
 struct Application {
@@ -31,8 +35,8 @@ struct Application {
   std::int64_t project_bytes = 0;
   /// Number of histories that are being read. Shared, because a reader may outlive the object.
   std::shared_ptr<std::atomic<int>> open_histories = std::make_shared<std::atomic<int>>(0);
-  /// Watches with a filter that are open; shared for the same reason.
-  std::shared_ptr<std::atomic<int>> open_project_watches = std::make_shared<std::atomic<int>>(0);
+  /// Of watches without names.
+  SharedPlaces project_watches{kMostProjectWatches};
   /// For calls that compute; the executor has its own.
   std::shared_ptr<PreparedGearSets> gear_sets = std::make_shared<PreparedGearSets>();
   /// For checking the inputs of new simulations, on half of the processors. Beside 20,000 refused

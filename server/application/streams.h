@@ -29,9 +29,6 @@ StreamOutcome<v1::ReadHistoryResponse> read_history(Application& application,
                                                     const v1::ReadHistoryRequest& request,
                                                     const CallContext& call = {});
 
-/// Watches without names. Each commit wakes all of them, at about a microsecond each.
-inline constexpr int kMostProjectWatches = 200;
-
 inline constexpr std::int64_t kChunkValues = 32'768;         ///< 256 KiB of doubles
 inline constexpr std::int64_t kOpenHistoryValues = 524'288;  ///< 4 MiB, in chunks under way
 

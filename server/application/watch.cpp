@@ -373,16 +373,6 @@ Outcome<Source> watch_named(Application& application, const v1::WatchSimulations
   return Source(std::make_shared<Watch>(application, std::move(beginning), after, call));
 }
 
-/// Returns a place among kMostProjectWatches, which is free again when the last copy is destroyed;
-/// null if there is none.
-std::shared_ptr<void> take_place(const std::shared_ptr<std::atomic<int>>& open) {
-  if (++*open > kMostProjectWatches) {
-    --*open;
-    return nullptr;
-  }
-  return {open.get(), [open](void*) { --*open; }};
-}
-
 Outcome<Source> watch_project(Application& application, const v1::WatchSimulationsRequest& request,
                               const CallContext& call) {
   Violations violations;
@@ -396,11 +386,12 @@ Outcome<Source> watch_project(Application& application, const v1::WatchSimulatio
     }
   }
   if (!violations.empty()) return invalid(violations);
-  std::shared_ptr<void> place = take_place(application.open_project_watches);
+  std::shared_ptr<void> place =
+      application.project_watches.take(call.grant->principal, call.project);
   if (!place) {
     return exhausted(v1::ERROR_REASON_TOO_MANY_STREAMS,
-                     fmt::format("{} watches without names are open, which is the limit; try again "
-                                 "in {} s",
+                     fmt::format("{} watches without names may be open, three quarters of them by "
+                                 "one principal or of one project; try again in {} s",
                                  kMostProjectWatches, kRetrySeconds),
                      kRetrySeconds);
   }

@@ -262,7 +262,7 @@ TEST_F(EventStreamTest, AClientThatHangsUpEndsItsStream) {
     }
   }
   EXPECT_TRUE(counts("CANCELLED", "WatchSimulations", 4));
-  EXPECT_EQ(app_.open_project_watches->load(), 0);
+  EXPECT_EQ(app_.project_watches.taken(), 0U);
 }
 
 TEST_F(EventStreamTest, StreamsAreLimitedInAllAndForEachPeer) {

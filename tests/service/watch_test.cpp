@@ -366,7 +366,7 @@ TEST_F(WatchTest, ManyWatchesWithoutNamesAreRefusedUntilOneIsClosed) {
   Application app = bench_.application();
   auto request = that_satisfy("lubricant = paper-fluid-1");
   std::vector<std::shared_ptr<MessageSource<v1::SimulationEvent>>> sources;
-  for (int i = 0; i < kMostProjectWatches; ++i) {
+  for (std::size_t i = 0; i < kMostProjectWatches * 3 / 4; ++i) {
     sources.push_back(watch_simulations(app, request).message());
     request.clear_filter();  // with and without a filter they count together
   }
@@ -376,6 +376,25 @@ TEST_F(WatchTest, ManyWatchesWithoutNamesAreRefusedUntilOneIsClosed) {
   EXPECT_TRUE(watch_simulations(app, of({finished()})).ok()) << "names are not limited";
   sources.pop_back();
   EXPECT_TRUE(watch_simulations(app, request).ok());
+}
+
+TEST(SharedPlaces, NeitherAPrincipalNorAProjectTakesThePlacesOfOthers) {
+  const SharedPlaces places(8);
+  std::vector<std::shared_ptr<void>> held;
+  const auto take = [&](const std::string& principal, const std::string& project) {
+    held.push_back(places.take(principal, project));
+    return held.back() != nullptr;
+  };
+  for (int i = 0; i < 6; ++i) EXPECT_TRUE(take("hog", "alpha"));
+  EXPECT_FALSE(take("hog", "alpha"));
+  EXPECT_FALSE(take("hog", "beta")) << "the principal has its share";
+  EXPECT_FALSE(take("other", "alpha")) << "the project has its share";
+  EXPECT_TRUE(take("other", "beta"));
+  EXPECT_TRUE(take("other", "beta"));
+  EXPECT_FALSE(take("third", "gamma")) << "all are taken";
+  EXPECT_EQ(places.taken(), 8U);
+  held.clear();
+  EXPECT_EQ(places.taken(), 0U);
 }
 
 TEST_F(WatchTest, AListSaysAfterWhichEventToWatch) {
