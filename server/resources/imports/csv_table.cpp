@@ -69,6 +69,15 @@ std::optional<std::vector<std::string>> split(std::string_view line, char separa
   return cells;
 }
 
+/// Removes the apostrophe that a CSV file for people has before a text that begins as a formula
+/// does.
+void remove_guard(std::string& cell) {
+  const std::size_t first = cell.find_first_not_of('\'');
+  const bool is_guarded = first != 0 && first != std::string::npos &&
+                          std::string_view("=+-@\t\r").find(cell[first]) != std::string_view::npos;
+  if (is_guarded) cell.erase(0, 1);
+}
+
 /// Adds at most kMaximumCsvViolations violations for one text.
 class CsvViolations {
  public:
@@ -99,6 +108,7 @@ class TableReader {
     auto cells = split(separator_ == '\t' ? line : text, separator_);
     const std::string place = fmt::format("{} row {}", table_.name, number);
     if (!cells) return limited_.add(place, "a quoted cell has no end, or text follows its end");
+    for (std::string& each : *cells) remove_guard(each);
     if (table_.columns.empty()) return read_header(std::move(*cells), place);
     if (cells->size() != table_.columns.size()) {
       return limited_.add(place, fmt::format("{} cells; allowed: {}, the number in the header",
