@@ -35,7 +35,7 @@ struct Application {
   std::int64_t project_bytes = 0;
   /// Number of histories that are being read. Shared, because a reader may outlive the object.
   std::shared_ptr<std::atomic<int>> open_histories = std::make_shared<std::atomic<int>>(0);
-  /// Of watches without names.
+  /// The places of watches without names.
   SharedPlaces project_watches{kMostProjectWatches};
   /// For calls that compute; the executor has its own.
   std::shared_ptr<PreparedGearSets> gear_sets = std::make_shared<PreparedGearSets>();

@@ -58,8 +58,8 @@ void keep_stated(const v1::Campaign& stated, int created_candidates, v1::Campaig
 }
 
 /// Returns the first field in which a stored campaign differs from a request under its request_id;
-/// empty if it differs in none. Of the request that made it: among those that UpdateCampaign
-/// changes in effect, as a repeated request does not undo a new name or new labels.
+/// empty if it differs in none. If this request made the campaign, only weights and attributes are
+/// compared: UpdateCampaign may have changed them. A new name or new labels are no difference.
 std::string differing_field(Application& application, const StoredCampaign& stored,
                             const v1::Campaign& stated, const CallContext& call) {
   v1::Campaign earlier;

@@ -78,7 +78,7 @@ struct CampaignJobs::Running {
   std::atomic<std::int64_t> points_done;
   std::mutex stall_mutex;                // `mutex` is locked while the campaign is read
   std::optional<StoreError> stalled;     // why its rows cannot be written; guarded by stall_mutex
-  std::atomic<bool> is_stalled = false;  // the same, for a quick look
+  std::atomic<bool> is_stalled = false;  // whether `stalled` is set, without a lock
   std::atomic<bool> is_halted = false;   // no further row is to be computed
 
   std::mutex mutex;

@@ -15,8 +15,8 @@ namespace tribodyn::server {
 // These functions check rules between fields and limits on work, which the table of constraints
 // cannot express. Each adds all violations that it finds.
 
-/// Adds a violation if the sump is below the pour point that the lubricant states. `name` is that of
-/// the oil in the message.
+/// Adds a violation if the sump is below the pour point that the lubricant states. `name` is that
+/// of the oil in the message.
 void check_pour_point(const v1::Lubricant& lubricant, double sump_temperature_celsius,
                       const std::string& path, Violations& violations,
                       std::string_view name = "the oil");

@@ -136,9 +136,9 @@ class Store {
                        const CallLimits& limits = {});
   /// Returns what purge_resource() would find, and changes nothing.
   Dependents dependents_of(const StoredResource& present, const CallLimits& limits = {});
-  /// Like erase_removed() of removal.h. `also_from_copies`: removes the copies that migrations made.
-  /// Other writers wait meanwhile. Returns the copies beside the database that may still contain
-  /// removed rows: also the databases that restores kept.
+  /// Like erase_removed() of removal.h. `also_from_copies`: removes the copies that migrations
+  /// made. Other writers wait meanwhile. Returns the copies beside the database that may still
+  /// contain removed rows: also the databases that restores kept.
   std::vector<std::filesystem::path> erase_removed(bool also_from_copies = true);
   /// Returns false if nothing was purged since the last erase_removed(). True in a new process, as
   /// the one before may have ended between the two.

@@ -1,6 +1,8 @@
 #include "client/cpp/commands/command.h"
 
+#include <atomic>
 #include <iostream>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -16,8 +18,9 @@ ProgressForm CommonOptions::progress_form() const {
 
 Connection CommonOptions::connect(std::chrono::duration<double> timeout) const try {
   Connection out(server_address(server), timeout, project, access_files(access));
-  out.report_waits([was_told = false](const std::string& why) mutable {
-    if (!std::exchange(was_told, true)) std::cerr << "tribodyn: waits: " << why << "\n";
+  // Calls of several threads may wait.
+  out.report_waits([was_told = std::make_shared<std::atomic<bool>>(false)](const std::string& why) {
+    if (!was_told->exchange(true)) std::cerr << "tribodyn: waits: " << why << "\n";
   });
   return out;
 } catch (const std::invalid_argument& error) {

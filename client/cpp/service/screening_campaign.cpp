@@ -324,6 +324,7 @@ v1::Campaign create_or_find(Connection& connection, v1::Campaign campaign,
       changed.emplace_back(path);
     }
   }
+  campaign.clear_candidate_columns();  // up to 24 MB that do not change
   return changed.empty() ? present : connection.update_campaign(campaign, changed);
 }
 

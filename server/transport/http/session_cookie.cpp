@@ -103,14 +103,15 @@ std::optional<SessionCookies::Session> SessionCookies::session_of(const std::str
   std::from_chars(text.data() + kHashDigits + 1, text.data() + text.size(), end);
   if (now >= end || end > now + lifetime_) return std::nullopt;
   if (sessions_->has_ended(sha256(cookie))) return std::nullopt;
-  return Session{text.substr(0, kHashDigits), end};
+  return Session{cookie, text.substr(0, kHashDigits), end};
 }
 
-std::string SessionCookies::cookie_of(const HttpRequest& request, Microseconds now) const {
+std::optional<SessionCookies::Session> SessionCookies::session_of(const HttpRequest& request,
+                                                                  Microseconds now) const {
   for (const std::string& each : cookies(request, cookie_name(request))) {
-    if (session_of(each, now)) return each;
+    if (auto session = session_of(each, now)) return session;
   }
-  return {};
+  return std::nullopt;
 }
 
 std::string SessionCookies::csrf_token(const std::string& cookie) const {
@@ -135,10 +136,9 @@ HttpResponse SessionCookies::description(const Grant& grant, const std::string& 
 HttpResponse SessionCookies::answer(const Authorizer& authorizer, const HttpRequest& request,
                                     Microseconds now) const {
   if (request.verb == "DELETE") {
-    const std::string own = cookie_of(request, now);
-    if (const auto session = session_of(own, now)) {
+    if (const auto session = session_of(request, now)) {
       try {
-        sessions_->end(sha256(own), session->end);
+        sessions_->end(sha256(session->cookie), session->end);
       } catch (const StoreError& failure) {
         spdlog::error("{}", failure.what());
         return error_response(store_failed(failure));
@@ -157,7 +157,10 @@ HttpResponse SessionCookies::answer(const Authorizer& authorizer, const HttpRequ
   }
   const auto grant = authorizer.authenticate(credentials_of(request), now);
   if (!grant.ok()) return error_response(grant.error());
-  if (request.verb != "POST") return description(*grant.message(), cookie_of(request, now));
+  if (request.verb != "POST") {
+    const auto session = session_of(request, now);
+    return description(*grant.message(), session ? session->cookie : std::string());
+  }
   const auto hash = token_hash_of_bearer(request.header("authorization"));
   if (!hash) return error_response(unauthenticated("a session begins with a token"));
   const std::string cookie = issue(*hash, now);
@@ -168,19 +171,19 @@ HttpResponse SessionCookies::answer(const Authorizer& authorizer, const HttpRequ
 
 std::optional<HttpResponse> SessionCookies::admit(HttpRequest& request, Microseconds now) const {
   if (request.is_owner || !request.header("authorization").empty()) return std::nullopt;
-  const std::string cookie = cookie_of(request, now);
-  if (cookie.empty()) return std::nullopt;
+  const auto session = session_of(request, now);
+  if (!session) return std::nullopt;
   const std::string_view site = request.header("sec-fetch-site");
   if (!site.empty() && site != "same-origin" && site != "none") {
     return refusal("a page of another origin may not use the session of this one");
   }
   const bool is_reading = request.verb == "GET" || request.verb == "HEAD";
-  if (!is_reading && !is_equal(request.header("tribodyn-csrf"), csrf_token(cookie))) {
+  if (!is_reading && !is_equal(request.header("tribodyn-csrf"), csrf_token(session->cookie))) {
     return refusal(
         "a change within a session needs the header Tribodyn-Csrf with the csrf_token of "
         "GET /session");
   }
-  request.session_token_hash = session_of(cookie, now)->token_hash;
+  request.session_token_hash = session->token_hash;
   return std::nullopt;
 }
 

@@ -40,13 +40,15 @@ class SessionCookies {
   std::string issue(const std::string& token_hash, Microseconds now) const;
   /// What a valid cookie stands for.
   struct Session {
+    std::string cookie;
     std::string token_hash;
     Microseconds end = 0;
   };
   /// Returns nullopt if the cookie is forged, expired or ended.
   std::optional<Session> session_of(const std::string& cookie, Microseconds now) const;
-  /// Returns the valid cookie of a request, or "".
-  std::string cookie_of(const HttpRequest& request, Microseconds now) const;
+  /// Returns the session of the first valid cookie of a request. To be asked once for a request:
+  /// the key may change at any moment.
+  std::optional<Session> session_of(const HttpRequest& request, Microseconds now) const;
   std::string csrf_token(const std::string& cookie) const;
   HttpResponse description(const Grant& grant, const std::string& cookie) const;
 

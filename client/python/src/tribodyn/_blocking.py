@@ -34,7 +34,7 @@ class _Loop:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._process = 0  # that has the thread
+        self._process = 0  # number of the process that started the thread
 
     def run(self, work: Coroutine[Any, Any, T]) -> T:
         """Runs the work to its end; an interruption (Ctrl-C) cancels it. Raises in a process that was
