@@ -100,7 +100,7 @@ void add_as_published_flag(FlagList& flags, v1::ModelOptions& options) {
   };
 }
 
-/// A word of --compare and what it sets.
+/// A value of --compare and the options that it sets.
 struct SwitchWord {
   std::string word, field;
   bool is_on = true;

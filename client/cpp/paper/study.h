@@ -20,7 +20,7 @@ std::vector<double> paper_speeds(double last = 140);
 struct PaperCurve {
   int fluid = 1;  ///< of the paper, 1 to 3
   double sump_temperature_celsius = 40;
-  /// Fields of ModelOptions that are on beside the preset PAPER, e.g. "isothermal",
+  /// Fields of ModelOptions that are on in addition to the preset PAPER, e.g. "isothermal",
   /// "as_published.eq20_semi_major".
   std::vector<std::string> switches = {};
   bool is_down_sweep = false;

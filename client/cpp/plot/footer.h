@@ -14,8 +14,8 @@ namespace tribodyn::client {
 /// simulation's inputs. One sentence per entry, not wrapped.
 std::vector<std::string> footer_texts(const std::vector<v1::Simulation>& simulations);
 
-/// Returns a sentence for each warning; with `is_hatched` those that withhold a verdict begin with
-/// "Hatched: ".
+/// Returns a sentence for each warning. With `is_hatched`, a sentence of a warning that withholds a
+/// verdict begins with "Hatched: ".
 std::vector<std::string> warning_footers(const std::vector<ShownWarning>& warnings,
                                          bool is_hatched = false);
 

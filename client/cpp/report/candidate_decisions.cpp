@@ -58,7 +58,7 @@ const char* worse_word(const v1::CandidateObjective& objective) {
   return is_loss && !objective.wants_most() ? "loses more" : "worse";
 }
 
-/// Returns the words on a candidate: "the best", "cannot be told apart", `worse`, or why there is
+/// Returns the verdict on a candidate: "the best", "cannot be told apart", `worse`, or why there is
 /// no verdict.
 std::string verdict_of(const v1::RankCandidatesResponse& answer, int place,
                        const std::string& worse) {
@@ -87,7 +87,7 @@ std::vector<std::string> refusal_remarks(const v1::RankCandidatesResponse& answe
   return out;
 }
 
-/// Adds cells that say which warnings a candidate has, as far as the ranking knows them.
+/// Adds cells with the warnings of a candidate that the ranking states.
 void add_warning_cells(const v1::RankCandidatesResponse& ranking, int candidate, CsvRow& row) {
   const std::vector<v1::CandidateWarning> warnings = warnings_of_candidate(ranking, candidate);
   row.emplace_back("verdict_withheld", withheld_by(warnings).empty() ? "false" : "true");

@@ -25,7 +25,7 @@ std::vector<ShownWarning> ranking_warnings(const v1::RankCandidatesResponse& ans
 std::string ranking_notes(const v1::RankCandidatesResponse& answer);
 
 // The answers about candidates of a campaign as texts. The figures of the requests name their
-// columns. `ranking`: one of the same candidates, which knows their warnings. The texts of tables
+// columns. `ranking`: a ranking of the same candidates, with their warnings. The texts of tables
 // do not list these: see ranking_notes().
 std::string ranking_answer_text(const v1::RankCandidatesRequest& request,
                                 const v1::RankCandidatesResponse& answer, OutputFormat format);

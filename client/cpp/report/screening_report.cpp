@@ -173,7 +173,7 @@ const std::vector<ShownWarning>& warnings_of(const Screening& screening, std::si
   return found == screening.warnings_of.end() ? none : found->second;
 }
 
-/// Returns the words on a candidate; an absent position is that of the base.
+/// Returns the verdict on a candidate; without a position, on the base.
 std::string verdict_of(const Screening& screening, const CandidateFigures& figures,
                        const RankingConfidence& confidence, std::optional<std::size_t> position) {
   if (figures.is_withheld) {
